@@ -1,0 +1,45 @@
+/*
+ * The displacement-discontinuity kernel (4.6) and its Toeplitz product on a box of cells.
+ *
+ * The one interface behind which another kernel fits: the product, the near-field entries.
+ * E' is a factor of every entry.
+ */
+#ifndef ILSAI_ELASTICITY_H
+#define ILSAI_ELASTICITY_H
+
+#include <ilsa/solver.h>
+
+/* C of (4.6) divided by E' for a cell offset (i, j) of cells dx by dy, free of cancellation. */
+double ilsai_kernel(long i, long j, double dx, double dy);
+
+typedef struct elasticity elasticity;
+
+/*
+ * method: ILSA_PRODUCT_FFT, _BLAS or _AUTO. NULL *e on failure. ILSA_ERR_MEMORY;
+ * ILSA_ERR_MISMATCH when FFT is asked for and not built in.
+ */
+ilsa_status ilsai_elasticity_create(double E_prime, double dx, double dy, ilsa_product method,
+                                    elasticity **e);
+void ilsai_elasticity_destroy(elasticity **e);
+
+/* Nonzero if the library was built with an FFT. */
+int ilsai_elasticity_has_fft(void);
+
+/*
+ * Makes ready for boxes of bx by by cells: kernel table, transform sizes, plans and buffers. Cheap
+ * when the rounded-up size is the one in use. Which transform is used, and so every bit of a
+ * product, depends on (bx, by) alone and not on earlier calls. On failure the box in use stays.
+ * ILSA_ERR_MEMORY.
+ */
+ilsa_status ilsai_elasticity_set_box(elasticity *e, int bx, int by);
+
+/*
+ * p[j * stride + i] = sum over the box of C(i - k, j - l) w[l * stride + k], for all 0 <= i < bx,
+ * 0 <= j < by. w and p may not overlap. Allocates nothing.
+ */
+void ilsai_elasticity_multiply(elasticity *e, const double *w, double *p, size_t stride);
+
+/* Entry C(i, j), |i| < bx, |j| < by, from the table of the box. */
+double ilsai_elasticity_entry(const elasticity *e, int i, int j);
+
+#endif

@@ -1,0 +1,25 @@
+/* The tip asymptote without argument checks: for use inside the library. Section 3. */
+#ifndef ILSAI_TIP_H
+#define ILSAI_TIP_H
+
+#include <ilsa/tip.h>
+
+/* Which processes the tip model includes is carried by the parameters: K_prime = 0, C_prime = 0. */
+typedef ilsa_material_def tip_law;
+
+/* Width at distance s > 0 behind a front of velocity V >= 0, (3.15); V = 0: toughness width. */
+double ilsai_tip_width(const tip_law *law, double V, double s);
+
+/* M0 and M1 over [0, s] of (3.18) for V >= 0 (V = 0: Delta_p = 0), w the width at s. */
+void ilsai_tip_moments(const tip_law *law, double V, double s, double w, double *M0, double *M1);
+
+/* The survey-cell inversion (4.9). */
+typedef struct tip_front {
+    double s;     /* distance to the front, >= s0 */
+    double V;     /* (s - s0) / dt */
+    double ds_dw; /* derivative of s with respect to w; 0 for an arrested front */
+} tip_front;
+
+tip_front ilsai_tip_distance(const tip_law *law, double w, double s0, double dt);
+
+#endif

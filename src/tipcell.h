@@ -1,0 +1,57 @@
+/*
+ * A cell that the front crosses: fluid volume (4.15)-(4.18) and leak-off (4.20)-(4.25), with the
+ * far corner included, so that both hold until the cell is full and beyond.
+ *
+ * The front in a cell is a straight line with normal (cos_a, sin_a), both >= 0, at distance ell
+ * from the interior corner; the wet part is a polygon whose chord at distance s from that corner
+ * has a trapezoidal length.
+ */
+#ifndef ILSAI_TIPCELL_H
+#define ILSAI_TIPCELL_H
+
+#include "tip.h"
+
+typedef struct tipcell_front {
+    double ell;          /* distance of the front from the farthest interior corner, may be <= 0 */
+    double cos_a, sin_a; /* normal, pointing out of the fracture, reflected into 0 .. pi/2 */
+    double dx, dy;       /* cell size */
+} tipcell_front;
+
+/*
+ * Volume of fluid in the cell (a length^3: not divided by dx dy) behind a front of velocity V > 0,
+ * or V = 0 and stress intensity K_I (scaled as K'): w = K_I s^(1/2) / E'. 0 for ell <= 0.
+ */
+double ilsai_tipcell_volume(const tip_law *law, double V, double K_I, const tipcell_front *front);
+
+/* Part of the cell that is wet, area, 0 .. dx dy. */
+double ilsai_tipcell_area(const tipcell_front *front);
+
+/*
+ * Where the front was since it entered the cell: ell[k] at time t[k], k = 0 .. count - 1, times
+ * increasing, ell not decreasing; ell[0] = 0 at t[0] = t_A. The last knot is the present.
+ */
+enum { TIPCELL_KNOTS = 16 };
+typedef struct tipcell_history {
+    int count;
+    double t[TIPCELL_KNOTS], ell[TIPCELL_KNOTS];
+} tipcell_history;
+
+/* Begins a history with the front at the interior corner at time t_A. */
+void ilsai_tipcell_enter(tipcell_history *history, double t_A);
+
+/*
+ * Appends the front at distance ell at time t, later than the last knot; an ell below the last is
+ * taken as the last. A full history drops the inner knot whose loss changes the path least.
+ */
+void ilsai_tipcell_record(tipcell_history *history, double t, double ell);
+
+/*
+ * Fluid leaked from the cell until the time of the last knot, >= 0, length^3 (minus (4.24)):
+ * 2 C' times the integral of (t - t_0)^(1/2) over the wet part. The velocity counts as constant,
+ * (4.21) and (4.23), where it has changed by no more than 20 % since the front entered the cell
+ * (first against last segment of the history); otherwise the history is used, (4.20) and (4.22).
+ */
+double ilsai_tipcell_leakoff(double C_prime, const tipcell_front *front,
+                             const tipcell_history *history);
+
+#endif
