@@ -39,6 +39,9 @@ ilsa_status ilsai_elasticity_set_box(elasticity *e, int bx, int by);
  */
 void ilsai_elasticity_multiply(elasticity *e, const double *w, double *p, size_t stride);
 
+/* ILSA_PRODUCT_FFT or _BLAS, whichever computes the products. */
+ilsa_product ilsai_elasticity_method(const elasticity *e);
+
 /* Entry C(i, j), |i| < bx, |j| < by, from the table of the box. */
 double ilsai_elasticity_entry(const elasticity *e, int i, int j);
 

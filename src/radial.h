@@ -7,6 +7,19 @@
 
 #include <ilsa/material.h>
 
+enum {
+    ILSAI_RADIAL_NODES = 25, /* of the profiles, from the source to the tip */
+    ILSAI_RADIAL_TIMES = 8   /* of the history that is computed, the last is t */
+};
+
+/* The radius through time: ln(t/t_end) is piecewise cubic in ln(R/R_end), a power law at first. */
+typedef struct radial_history {
+    int count;
+    double log_radius[ILSAI_RADIAL_TIMES];
+    double log_time[ILSAI_RADIAL_TIMES];
+    double alpha[ILSAI_RADIAL_TIMES]; /* d ln R / d ln t */
+} radial_history;
+
 typedef struct radial_solution {
     ilsa_material_def scaled;
     double Q;          /* rate */
@@ -15,7 +28,13 @@ typedef struct radial_solution {
     double V;          /* dR / dt */
     double alpha;      /* d ln R / d ln t */
     double efficiency; /* volume in the fracture / (Q t) */
-    double profile[8]; /* parameters of the width profile, private to radial.c */
+
+    /* Private to radial.c. */
+    double log_width[ILSAI_RADIAL_NODES];
+    double pressure[ILSAI_RADIAL_NODES];       /* from node 1 on */
+    double pressure_slope[ILSAI_RADIAL_NODES]; /* d p / d ln(rho / (1 - rho)) */
+    double tip_power;                          /* d ln w / d ln s at the outermost node */
+    radial_history history;
 } radial_solution;
 
 /* The solution at a time t > 0. ILSA_ERR_VALUE if it cannot be found (parameters out of reach). */

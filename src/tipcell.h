@@ -54,4 +54,12 @@ void ilsai_tipcell_record(tipcell_history *history, double t, double ell);
 double ilsai_tipcell_leakoff(double C_prime, const tipcell_front *front,
                              const tipcell_history *history);
 
+/*
+ * The same for a path of any number of knots, without the choice: the front moves linearly from
+ * (t[k], ell[k]) to (t[k + 1], ell[k + 1]) and the last knot is the present. front->ell plays no
+ * part. Exact for the path given, so that one segment is (4.21) and (4.23).
+ */
+double ilsai_tipcell_leakoff_path(double C_prime, const tipcell_front *front, int count,
+                                  const double *t, const double *ell);
+
 #endif

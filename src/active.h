@@ -1,0 +1,29 @@
+/* The active cells of a pass: the representative channel and tip cells, numbered for the solve. */
+#ifndef ILSAI_ACTIVE_H
+#define ILSAI_ACTIVE_H
+
+#include "grid.h"
+#include <ilsa/status.h>
+
+typedef struct active {
+    int count, capacity;
+    int *cell;          /* mesh index of each */
+    unsigned char *tip; /* 1: tip cell, its unknown is the pressure; 0: channel cell, the width */
+    int *neighbour;     /* GRID_FACES per cell: number of the active cell there, or -1 */
+    int *slot;          /* over the mesh: number of the active cell, or -1 */
+    size_t mesh_cells;
+    box footprint;
+} active;
+
+ilsa_status ilsai_active_create(active *a, const ilsa_mesh_def *mesh);
+void ilsai_active_destroy(active *a);
+
+/*
+ * Lists the cells of footprint (the bounding box, images included) that are not empty. The numbers
+ * run fastest along the shorter side, which keeps the band of a stencil matrix narrow.
+ * ILSA_ERR_MEMORY.
+ */
+ilsa_status ilsai_active_set(active *a, const grid *g, const box *footprint,
+                             const unsigned char *kind);
+
+#endif

@@ -1,0 +1,195 @@
+#include "advance.h"
+
+#include "clock.h"
+#include "step.h"
+#include "tuning.h"
+#include <math.h>
+
+static int open_face(const ilsa_solver *s, const grid *g, int i, int j, int face) {
+    int other = ilsai_grid_neighbour(g, i, j, face);
+    return other < 0 || s->field.kind[other] < ILSA_CELL_SURVEY;
+}
+
+double ilsai_front_rate(const ilsa_solver *s) {
+    grid g = ilsai_grid(&s->mesh, 0, 0);
+    const box *b = &s->now.footprint;
+    double largest = 0;
+    for (int j = b->y0; j <= b->y1; j++) {
+        for (int i = b->x0; i <= b->x1; i++) {
+            int cell = ilsai_grid_cell(&g, i, j);
+            if (s->field.kind[cell] != ILSA_CELL_SURVEY) {
+                continue;
+            }
+            int along_x = open_face(s, &g, i, j, GRID_LEFT) || open_face(s, &g, i, j, GRID_RIGHT);
+            int along_y = open_face(s, &g, i, j, GRID_DOWN) || open_face(s, &g, i, j, GRID_UP);
+            double size = along_x && along_y ? ilsai_grid_h(&g) : along_x ? g.dx : g.dy;
+            largest = fmax(largest, s->field.speed[cell] / size);
+        }
+    }
+    return largest;
+}
+
+static double suggestion(const ilsa_solver *s) {
+    double rate = ilsai_front_rate(s), resting = ILSAI_DT_RESTING * s->now.time;
+    double dt = rate * resting > s->step_cells ? s->step_cells / rate : resting;
+    dt = fmin(dt, s->now.dt_limit);
+    return s->def.dt_max > 0 ? fmin(dt, s->def.dt_max) : dt;
+}
+
+static ilsa_status check_started(const ilsa_solver *s, error_text *error) {
+    return s->now.started
+               ? ILSA_OK
+               : ilsai_fail(error, ILSA_ERR_STATE, "no fracture yet: call ilsa_start_radial first");
+}
+
+ilsa_status ilsa_suggest_dt(const ilsa_solver *solver, double *dt) {
+    error_text *error = ilsai_thread_error();
+    ilsa_status status = ilsai_check_pointer(error, "solver", solver);
+    status = status ? status : ilsai_check_pointer(error, "dt", dt);
+    status = status ? status : check_started(solver, error);
+    if (status == ILSA_OK) {
+        *dt = suggestion(solver);
+    }
+    return status;
+}
+
+static void finish_report(ilsa_solver *s, ilsa_report *report, double start) {
+    report->time = s->now.time;
+    report->dt = s->now.dt;
+    report->front_change = s->now.front_change;
+    report->front_advance = s->now.front_advance;
+    report->seconds = ilsai_clock() - start;
+}
+
+/* Adds the work of one report to another; time, dt and the like become the later one's. */
+static void add_report(ilsa_report *sum, const ilsa_report *r) {
+    ilsa_report total = *r;
+    total.steps += sum->steps;
+    total.rejected += sum->rejected;
+    total.front_iterations += sum->front_iterations;
+    total.newton_iterations += sum->newton_iterations;
+    total.krylov_iterations += sum->krylov_iterations;
+    total.elasticity_products += sum->elasticity_products;
+    total.coarsened += sum->coarsened;
+    total.seconds += sum->seconds;
+    *sum = total;
+}
+
+static const char *reason(ilsa_status status) {
+    return status == ILSA_STEP_REJECTED    ? "no solution was found"
+           : status == ILSA_STEP_TOO_LARGE ? "the front would move more than the cells one step may"
+           : status == ILSA_CLOSED         ? "the fracture would close"
+           : status == ILSA_ERR_MEMORY     ? "no memory"
+                                           : NULL;
+}
+
+/* One attempt, with its message and counters. */
+static ilsa_status attempt(ilsa_solver *s, double dt, ilsa_report *report) {
+    double start = ilsai_clock();
+    *report = (ilsa_report){0};
+    ilsa_status status = ilsai_step(s, dt, report);
+    report->steps = status == ILSA_OK;
+    report->rejected = status != ILSA_OK;
+    if (reason(status)) {
+        ilsai_fail(&s->error, status, "step of dt = %g at time %g: %s", dt, s->now.time,
+                   reason(status));
+    }
+    finish_report(s, report, start);
+    add_report(&s->total, report);
+    s->profile.rest =
+        s->total.seconds - s->profile.product - s->profile.preconditioner - s->profile.front;
+    return status;
+}
+
+static ilsa_status check_solver(ilsa_solver *s) {
+    return s ? check_started(s, &s->error) : ilsai_check_pointer(ilsai_thread_error(), "solver", s);
+}
+
+ilsa_status ilsa_step(ilsa_solver *solver, double dt, ilsa_report *report) {
+    ilsa_report own = {0}, *out = report ? report : &own;
+    ilsa_status status = check_solver(solver);
+    if (!solver) {
+        return status;
+    }
+    status = status ? status : ilsai_check_positive(&solver->error, "dt", dt);
+    if (status == ILSA_OK && !(solver->now.time + dt > solver->now.time)) {
+        status =
+            ilsai_fail(&solver->error, ILSA_ERR_VALUE,
+                       "dt = %g: too small to move the clock on from %g", dt, solver->now.time);
+    }
+    if (status != ILSA_OK) {
+        *out = (ilsa_report){.time = solver->now.time};
+        return status;
+    }
+    return attempt(solver, dt, out);
+}
+
+static int try_again(ilsa_status status) {
+    return status == ILSA_STEP_REJECTED || status == ILSA_STEP_TOO_LARGE || status == ILSA_CLOSED;
+}
+
+/* Steps shrink after a refusal and may grow again step by step. */
+static ilsa_status step_until_accepted(ilsa_solver *s, double t_limit, ilsa_report *report) {
+    for (;;) {
+        double left = t_limit - s->now.time, dt = suggestion(s);
+        dt = dt >= left ? left : dt > 0.5 * left ? 0.5 * left : dt;
+        ilsa_report one;
+        ilsa_status status = attempt(s, dt, &one);
+        add_report(report, &one);
+        if (status == ILSA_OK) {
+            s->now.time = dt == left ? t_limit : s->now.time;
+            s->now.dt_limit *= ILSAI_DT_GROWTH;
+            report->time = s->now.time;
+            return ILSA_OK;
+        }
+        if (!try_again(status)) {
+            return status;
+        }
+        s->now.dt_limit = ILSAI_DT_CUT * dt;
+        if (s->now.dt_limit < ILSAI_DT_SMALLEST * s->now.time) {
+            return status == ILSA_CLOSED ? status : ILSA_STALLED;
+        }
+    }
+}
+
+static ilsa_status advance_one(ilsa_solver *s, double t_limit, ilsa_report *report) {
+    ilsa_status status = step_until_accepted(s, t_limit, report);
+    if (status == ILSA_MESH_EDGE && s->def.coarsen) {
+        status = ilsa_coarsen(s);
+        report->coarsened += status == ILSA_OK;
+        s->total.coarsened += status == ILSA_OK;
+        status = status ? status : step_until_accepted(s, t_limit, report);
+    }
+    return status;
+}
+
+static ilsa_status check_limit(ilsa_solver *s, const char *name, double t) {
+    ilsa_status status = check_solver(s);
+    if (status == ILSA_OK && !(t > s->now.time && isfinite(t))) {
+        status = ilsai_fail(&s->error, ILSA_ERR_VALUE,
+                            "%s = %g: must be finite and later than the time now, %g", name, t,
+                            s->now.time);
+    }
+    return status;
+}
+
+ilsa_status ilsa_advance_one(ilsa_solver *solver, double t_limit, ilsa_report *report) {
+    ilsa_report own = {0}, *out = report ? report : &own;
+    ilsa_status status = check_limit(solver, "t_limit", t_limit);
+    if (solver) {
+        *out = (ilsa_report){.time = solver->now.time};
+    }
+    return status ? status : advance_one(solver, t_limit, out);
+}
+
+ilsa_status ilsa_advance(ilsa_solver *solver, double t_end, ilsa_report *report) {
+    ilsa_report own = {0}, *out = report ? report : &own;
+    ilsa_status status = check_limit(solver, "t_end", t_end);
+    if (solver) {
+        *out = (ilsa_report){.time = solver->now.time};
+    }
+    while (status == ILSA_OK && solver->now.time < t_end) {
+        status = advance_one(solver, t_end, out);
+    }
+    return status;
+}

@@ -1,0 +1,13 @@
+/* Wall time in seconds, for the report and the profile only. */
+#ifndef ILSAI_CLOCK_H
+#define ILSAI_CLOCK_H
+
+#include <time.h>
+
+static inline double ilsai_clock(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+#endif

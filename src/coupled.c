@@ -1,0 +1,212 @@
+#include "coupled.h"
+
+#include "clock.h"
+#include "gmres.h"
+#include "jacobian.h"
+#include "tuning.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct coupled {
+    active cells;
+    flow fluid;
+    jacobian matrix;
+    gmres *krylov;
+    double *rhs, *step;
+    int capacity;
+    size_t mesh_cells;
+};
+
+coupled *ilsai_coupled_create(const ilsa_mesh_def *mesh) {
+    coupled *c = calloc(1, sizeof *c);
+    if (!c) {
+        return NULL;
+    }
+    c->mesh_cells = (size_t)mesh->nx * (size_t)mesh->ny;
+    c->krylov = ilsai_gmres_create(ILSAI_GMRES_RESTART);
+    c->matrix.width = calloc(c->mesh_cells, sizeof(double));
+    c->matrix.pressure = calloc(c->mesh_cells, sizeof(double));
+    if (ilsai_active_create(&c->cells, mesh) != ILSA_OK || !c->krylov || !c->matrix.width ||
+        !c->matrix.pressure) {
+        ilsai_coupled_destroy(&c);
+    }
+    return c;
+}
+
+void ilsai_coupled_destroy(coupled **c) {
+    if (*c) {
+        ilsai_active_destroy(&(*c)->cells);
+        ilsai_flow_destroy(&(*c)->fluid);
+        ilsai_jacobian_destroy(&(*c)->matrix);
+        ilsai_gmres_destroy(&(*c)->krylov);
+        free((*c)->rhs);
+        free((*c)->step);
+        free(*c);
+        *c = NULL;
+    }
+}
+
+int ilsai_coupled_unknowns(const coupled *c) {
+    return c->cells.count;
+}
+
+static ilsa_status reserve(coupled *c, int count) {
+    if (ilsai_flow_reserve(&c->fluid, count) != ILSA_OK ||
+        ilsai_gmres_reserve(c->krylov, (size_t)count) != ILSA_OK) {
+        return ILSA_ERR_MEMORY;
+    }
+    if (count > c->capacity) {
+        size_t capacity = (size_t)count + (size_t)count / 2 + 64;
+        double *rhs = realloc(c->rhs, capacity * sizeof *rhs);
+        c->rhs = rhs ? rhs : c->rhs;
+        double *step = realloc(c->step, capacity * sizeof *step);
+        c->step = step ? step : c->step;
+        if (!rhs || !step) {
+            return ILSA_ERR_MEMORY;
+        }
+        c->capacity = (int)capacity;
+    }
+    return ILSA_OK;
+}
+
+static void set_images(const coupled *c, const grid *g, double *width) {
+    int image[4];
+    for (int k = 0; k < c->cells.count; k++) {
+        int cell = c->cells.cell[k];
+        int count = ilsai_grid_images(g, cell % g->nx, cell / g->nx, image);
+        for (int m = 1; m < count; m++) {
+            width[image[m]] = width[cell];
+        }
+    }
+}
+
+void ilsai_coupled_pressure(coupled *c, const coupled_problem *problem, coupled_counts *counts) {
+    const active *a = &c->cells;
+    double start = ilsai_clock(), *product = c->matrix.pressure;
+    size_t corner = (size_t)ilsai_grid_cell(problem->g, a->footprint.x0, a->footprint.y0);
+    ilsai_elasticity_multiply(problem->e, problem->width + corner, product + corner,
+                              (size_t)problem->g->nx);
+    counts->seconds_product += ilsai_clock() - start;
+    counts->products++;
+    for (int k = 0; k < a->count; k++) {
+        if (!a->tip[k]) {
+            int cell = a->cell[k];
+            problem->pressure[cell] = problem->sigma[cell] + product[cell];
+        }
+    }
+}
+
+/* rhs = -(w - w_old - dt A(w) p - S), (4.4). */
+static void set_rhs(coupled *c, const coupled_problem *problem) {
+    const active *a = &c->cells;
+    ilsai_flow_set(&c->fluid, a, problem->g, problem->width, problem->pressure,
+                   problem->dt / problem->mu_prime);
+    ilsai_flow_gain(&c->fluid, a, problem->pressure, c->rhs);
+    for (int k = 0; k < a->count; k++) {
+        int cell = a->cell[k];
+        c->rhs[k] += problem->gain[cell] - (problem->width[cell] - problem->width_old[cell]);
+    }
+}
+
+static ilsa_status solve_iterative(coupled *c, coupled_counts *counts, int refactor) {
+    if (refactor) {
+        ilsa_status status = ilsai_jacobian_factor_stencil(&c->matrix);
+        if (status != ILSA_OK) {
+            return status;
+        }
+    }
+    gmres_result result = ilsai_gmres_solve(
+        c->krylov, (size_t)c->cells.count, ilsai_jacobian_multiply, ilsai_jacobian_precondition,
+        &c->matrix, c->rhs, c->step, ILSAI_GMRES_TOLERANCE, ILSAI_GMRES_ITERATIONS);
+    counts->krylov += result.iterations;
+    return result.converged ? ILSA_OK : ILSA_STEP_REJECTED;
+}
+
+/* The largest part of the Newton step, at most 1, that leaves every width positive. */
+static double step_length(const coupled *c, const coupled_problem *problem) {
+    double length = 1;
+    for (int k = 0; k < c->cells.count; k++) {
+        double w = problem->width[c->cells.cell[k]];
+        if (!c->cells.tip[k] && -c->step[k] * length > ILSAI_WIDTH_DROP * w) {
+            length = ILSAI_WIDTH_DROP * w / -c->step[k];
+        }
+    }
+    return length;
+}
+
+/* Takes the step; returns the largest change of width over the largest width, NaN if not finite. */
+static double take_step(const coupled *c, const coupled_problem *problem, double length) {
+    double change = 0, largest = 0, sum = 0;
+    for (int k = 0; k < c->cells.count; k++) {
+        int cell = c->cells.cell[k];
+        double delta = length * c->step[k];
+        sum += delta;
+        if (c->cells.tip[k]) {
+            problem->pressure[cell] += delta;
+        } else {
+            problem->width[cell] += delta;
+            change = fabs(delta) > change ? fabs(delta) : change;
+            largest = problem->width[cell] > largest ? problem->width[cell] : largest;
+        }
+    }
+    return isfinite(sum) && largest > 0 ? change / largest : NAN;
+}
+
+static int choose_dense(const coupled *c, const coupled_problem *problem) {
+    return problem->linear == ILSA_LINEAR_DENSE ||
+           (problem->linear == ILSA_LINEAR_AUTO && c->cells.count <= ILSAI_DENSE_UNKNOWNS);
+}
+
+static ilsa_status newton(coupled *c, const coupled_problem *problem, coupled_counts *counts) {
+    int dense = choose_dense(c, problem);
+    ilsa_status status = dense ? ilsai_jacobian_set_influence(&c->matrix) : ILSA_OK;
+    double length = 1;
+    for (int iteration = 0; iteration < problem->max_newton && status == ILSA_OK; iteration++) {
+        ilsai_coupled_pressure(c, problem, counts);
+        set_rhs(c, problem);
+        counts->newton++;
+        status = dense ? ilsai_jacobian_solve_full(&c->matrix, c->rhs, c->step)
+                       : solve_iterative(c, counts, 1);
+        if (status != ILSA_OK) {
+            return status == ILSA_ERR_NUMERIC ? ILSA_STEP_REJECTED : status;
+        }
+        length = step_length(c, problem);
+        double change = take_step(c, problem, length);
+        set_images(c, problem->g, problem->width);
+        if (isnan(change)) {
+            return ILSA_STEP_REJECTED;
+        }
+        if (change <= problem->tolerance && length == 1) {
+            ilsai_coupled_pressure(c, problem, counts);
+            return ILSA_OK;
+        }
+    }
+    return status != ILSA_OK ? status : length < 1 ? ILSA_CLOSED : ILSA_STEP_REJECTED;
+}
+
+ilsa_status ilsai_coupled_solve(coupled *c, const coupled_problem *problem,
+                                coupled_counts *counts) {
+    ilsa_status status =
+        ilsai_active_set(&c->cells, problem->g, &problem->footprint, problem->kind);
+    if (status != ILSA_OK || reserve(c, c->cells.count) != ILSA_OK) {
+        return ILSA_ERR_MEMORY;
+    }
+    int bx = problem->footprint.x1 - problem->footprint.x0 + 1;
+    int by = problem->footprint.y1 - problem->footprint.y0 + 1;
+    if (ilsai_elasticity_set_box(problem->e, bx, by) != ILSA_OK) {
+        return ILSA_ERR_MEMORY;
+    }
+    set_images(c, problem->g, problem->width);
+    c->matrix.g = problem->g;
+    c->matrix.a = &c->cells;
+    c->matrix.f = &c->fluid;
+    c->matrix.e = problem->e;
+    c->matrix.products = 0;
+    c->matrix.seconds_product = c->matrix.seconds_preconditioner = 0;
+    status = newton(c, problem, counts);
+    counts->products += c->matrix.products;
+    counts->seconds_product += c->matrix.seconds_product;
+    counts->seconds_preconditioner += c->matrix.seconds_preconditioner;
+    return status;
+}

@@ -1,0 +1,250 @@
+#include "elasticity.h"
+#include "fft.h"
+
+#include <cblas.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double pi = 3.14159265358979323846;
+
+/* The kernel */
+
+/*
+ * (4.6) at (x, y), x >= y >= 0 up to rounding, x > 0, of cells 1 by r around the origin. The four
+ * corner terms (X^2 + Y^2)^(1/2) / (X Y) cancel far away; here their difference is taken by hand,
+ * so that all that is left to add has one sign. a[s][t] = (1 + Y_s^2 / X_t^2)^(1/2).
+ */
+static double kernel_off_axis(double i, double j, double r) {
+    double xl = i - 0.5, xu = i + 0.5, yl = (j - 0.5) * r, yu = (j + 0.5) * r;
+    double ll = sqrt(1 + (yl / xl) * (yl / xl)), lu = sqrt(1 + (yl / xu) * (yl / xu));
+    double ul = sqrt(1 + (yu / xl) * (yu / xl)), uu = sqrt(1 + (yu / xu) * (yu / xu));
+    double area = xl * xu;
+    double front = (2 * i / area) * (2 * j * r * r / area);
+    double above = yu / (uu + ul) + yl / (lu + ll);
+    double below = (yl * uu + yu * lu) * (yl * ul + yu * ll);
+    return -front * above / below / (8 * pi);
+}
+
+/* The same at (i, 0), i >= 1, where the corners lie at y = -+ r / 2. */
+static double kernel_on_axis(double i, double r) {
+    double xl = i - 0.5, xu = i + 0.5, b = 0.5 * r;
+    double area = xl * xu;
+    double roots = sqrt(1 + (b / xu) * (b / xu)) + sqrt(1 + (b / xl) * (b / xl));
+    return -(4 * b / area) * (i / area) / roots / (8 * pi);
+}
+
+/*
+ * In units of dx, so that nothing overflows, and mirrored about the diagonal where y > x, so that
+ * swapping the axes of cell and offset gives the same bits.
+ */
+double ilsai_kernel(long i, long j, double dx, double dy) {
+    double m = fabs((double)i), n = fabs((double)j);
+    if (m * dx < n * dy || (m * dx == n * dy && dx < dy)) {
+        double swap = m;
+        m = n;
+        n = swap;
+        swap = dx;
+        dx = dy;
+        dy = swap;
+    }
+    double r = dy / dx;
+    if (m == 0)
+        return sqrt(1 + r * r) / (pi * r) / dx;
+    return (n == 0 ? kernel_on_axis(m, r) : kernel_off_axis(m, n, r)) / dx;
+}
+
+/* The product */
+
+/* What a box needs; made anew only when the capacity changes. */
+typedef struct engine {
+    int cx, cy;       /* largest box */
+    double *table;    /* C(i, j) at j * cx + i */
+    fft *transform;   /* FFT */
+    double *toeplitz; /* BLAS: one block of the matrix, */
+    double *folded;   /* and the widths it multiplies */
+} engine;
+
+struct elasticity {
+    double E_prime, dx, dy;
+    int by_fft;
+    int bx, by; /* the box in use */
+    engine engine;
+};
+
+/*
+ * The smallest of 8, 10, 12, 14, 16, 20, 24, 28, 32, 40, ... that is not below b. Transforms of
+ * these lengths are fast, sizes between gain little or lose, and plans serve for several cells of
+ * growth.
+ */
+static int capacity(int b) {
+    int unit = 2;
+    while (7 * unit < b)
+        unit *= 2;
+    for (int c = 4; c <= 7; c++)
+        if (c * unit >= b)
+            return c * unit;
+    return 8 * unit;
+}
+
+static double *alloc_doubles(size_t rows, size_t columns) {
+    return malloc(rows * columns * sizeof(double));
+}
+
+static double *make_table(const elasticity *e, int cx, int cy) {
+    double *table = alloc_doubles((size_t)cx, (size_t)cy);
+    if (!table)
+        return NULL;
+    for (int j = 0; j < cy; j++)
+        for (int i = 0; i < cx; i++)
+            table[(size_t)j * (size_t)cx + (size_t)i] =
+                e->E_prime * ilsai_kernel(i, j, e->dx, e->dy);
+    return table;
+}
+
+static void engine_destroy(engine *n) {
+    ilsai_fft_destroy(&n->transform);
+    free(n->table);
+    free(n->toeplitz);
+    free(n->folded);
+    *n = (engine){0};
+}
+
+static ilsa_status engine_create(const elasticity *e, int cx, int cy, engine *made) {
+    engine n = {.cx = cx, .cy = cy, .table = make_table(e, cx, cy)};
+    if (n.table && e->by_fft)
+        n.transform = ilsai_fft_create(cx, cy, n.table);
+    if (n.table && !e->by_fft) {
+        size_t side = (size_t)(cx < cy ? cx : cy);
+        n.toeplitz = alloc_doubles(side, side);
+        n.folded = alloc_doubles((size_t)cx, (size_t)cy);
+    }
+    if (!n.transform && !(n.toeplitz && n.folded)) {
+        engine_destroy(&n);
+        return ILSA_ERR_MEMORY;
+    }
+    *made = n;
+    return ILSA_OK;
+}
+
+int ilsai_elasticity_has_fft(void) {
+    return ilsai_fft_available();
+}
+
+ilsa_status ilsai_elasticity_create(double E_prime, double dx, double dy, ilsa_product method,
+                                    elasticity **e) {
+    *e = NULL;
+    if (method == ILSA_PRODUCT_FFT && !ilsai_fft_available())
+        return ILSA_ERR_MISMATCH;
+    elasticity *made = calloc(1, sizeof *made);
+    if (!made)
+        return ILSA_ERR_MEMORY;
+    made->E_prime = E_prime;
+    made->dx = dx;
+    made->dy = dy;
+    made->by_fft = method != ILSA_PRODUCT_BLAS && ilsai_fft_available();
+    *e = made;
+    return ILSA_OK;
+}
+
+void ilsai_elasticity_destroy(elasticity **e) {
+    if (!*e)
+        return;
+    engine_destroy(&(*e)->engine);
+    free(*e);
+    *e = NULL;
+}
+
+ilsa_status ilsai_elasticity_set_box(elasticity *e, int bx, int by) {
+    int cx = capacity(bx), cy = capacity(by);
+    if (cx != e->engine.cx || cy != e->engine.cy) {
+        engine made;
+        ilsa_status status = engine_create(e, cx, cy, &made);
+        if (status)
+            return status;
+        engine_destroy(&e->engine);
+        e->engine = made;
+    }
+    e->bx = bx;
+    e->by = by;
+    return ILSA_OK;
+}
+
+double ilsai_elasticity_entry(const elasticity *e, int i, int j) {
+    return e->engine.table[(size_t)abs(j) * (size_t)e->engine.cx + (size_t)abs(i)];
+}
+
+/*
+ * Without FFT the matrix is taken apart into symmetric Toeplitz blocks of the shorter side: block
+ * d couples lines that lie d apart along the longer side. C is even, so that the lines at +d and
+ * -d are added before they are multiplied, and each block is formed and used once.
+ */
+
+/* toeplitz[r][c] = C at |r - c| along the shorter side and d along the longer. */
+static void form_block(const elasticity *e, int side, size_t step, const double *from) {
+    size_t n = (size_t)side;
+    double *t = e->engine.toeplitz;
+    for (size_t r = 0; r < n; r++)
+        for (size_t c = 0; c < n; c++)
+            t[r * n + c] = from[(r > c ? r - c : c - r) * step];
+}
+
+static void add_line(double *to, const double *from, size_t count) {
+    for (size_t n = 0; n < count; n++)
+        to[n] += from[n];
+}
+
+/* folded[j] = w[j - d] + w[j + d], whole rows. */
+static void fold_rows(elasticity *e, size_t d, const double *w, size_t stride) {
+    size_t bx = (size_t)e->bx, by = (size_t)e->by;
+    double *folded = e->engine.folded;
+    memset(folded, 0, bx * by * sizeof *folded);
+    for (size_t j = 0; j + d < by; j++) {
+        add_line(folded + (j + d) * bx, w + j * stride, bx);
+        if (d > 0)
+            add_line(folded + j * bx, w + (j + d) * stride, bx);
+    }
+}
+
+/* folded[j][i] = w[j][i - d] + w[j][i + d]. */
+static void fold_columns(elasticity *e, size_t d, const double *w, size_t stride) {
+    size_t bx = (size_t)e->bx, by = (size_t)e->by;
+    double *folded = e->engine.folded;
+    memset(folded, 0, bx * by * sizeof *folded);
+    for (size_t j = 0; j < by; j++) {
+        add_line(folded + j * bx + d, w + j * stride, bx - d);
+        if (d > 0)
+            add_line(folded + j * bx, w + j * stride + d, bx - d);
+    }
+}
+
+static void multiply_by_rows(elasticity *e, const double *w, double *p, size_t stride) {
+    for (int d = 0; d < e->by; d++) {
+        form_block(e, e->bx, 1, e->engine.table + (size_t)d * (size_t)e->engine.cx);
+        fold_rows(e, (size_t)d, w, stride);
+        cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, e->by, e->bx, e->bx, 1,
+                    e->engine.folded, e->bx, e->engine.toeplitz, e->bx, d > 0, p, (int)stride);
+    }
+}
+
+static void multiply_by_columns(elasticity *e, const double *w, double *p, size_t stride) {
+    for (int d = 0; d < e->bx; d++) {
+        form_block(e, e->by, (size_t)e->engine.cx, e->engine.table + d);
+        fold_columns(e, (size_t)d, w, stride);
+        cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, e->by, e->bx, e->by, 1,
+                    e->engine.toeplitz, e->by, e->engine.folded, e->bx, d > 0, p, (int)stride);
+    }
+}
+
+void ilsai_elasticity_multiply(elasticity *e, const double *w, double *p, size_t stride) {
+    if (e->by_fft)
+        ilsai_fft_convolve(e->engine.transform, e->bx, e->by, w, p, stride);
+    else if (e->bx <= e->by)
+        multiply_by_rows(e, w, p, stride);
+    else
+        multiply_by_columns(e, w, p, stride);
+}
+
+ilsa_product ilsai_elasticity_method(const elasticity *e) {
+    return e->by_fft ? ILSA_PRODUCT_FFT : ILSA_PRODUCT_BLAS;
+}

@@ -1,0 +1,25 @@
+#include "fft.h"
+
+int ilsai_fft_available(void) {
+    return 0;
+}
+
+fft *ilsai_fft_create(int cx, int cy, const double *kernel) {
+    (void)cx;
+    (void)cy;
+    (void)kernel;
+    return NULL;
+}
+
+void ilsai_fft_destroy(fft **f) {
+    *f = NULL;
+}
+
+void ilsai_fft_convolve(fft *f, int bx, int by, const double *w, double *p, size_t stride) {
+    (void)f;
+    (void)bx;
+    (void)by;
+    (void)w;
+    (void)p;
+    (void)stride;
+}

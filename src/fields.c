@@ -1,0 +1,93 @@
+#include "state.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+ilsa_status ilsai_fields_create(fields *f, const ilsa_mesh_def *mesh, int leak_off) {
+    size_t count = ilsai_mesh_cells(mesh);
+    memset(f, 0, sizeof *f);
+    f->width = malloc(count * sizeof(double));
+    f->pressure = malloc(count * sizeof(double));
+    f->level = malloc(count * sizeof(double));
+    f->speed = malloc(count * sizeof(double));
+    f->kind = malloc(count);
+    if (leak_off) {
+        f->trigger = malloc(count * sizeof(double));
+        f->leaked = malloc(count * sizeof(double));
+    }
+    if (!f->width || !f->pressure || !f->level || !f->speed || !f->kind ||
+        (leak_off && (!f->trigger || !f->leaked))) {
+        ilsai_fields_destroy(f);
+        return ILSA_ERR_MEMORY;
+    }
+    ilsai_fields_clear(f, count);
+    return ILSA_OK;
+}
+
+void ilsai_fields_destroy(fields *f) {
+    free(f->width);
+    free(f->pressure);
+    free(f->level);
+    free(f->speed);
+    free(f->trigger);
+    free(f->leaked);
+    free(f->kind);
+    memset(f, 0, sizeof *f);
+}
+
+static void clear_range(fields *f, size_t first, size_t count) {
+    memset(f->width + first, 0, count * sizeof(double));
+    memset(f->pressure + first, 0, count * sizeof(double));
+    memset(f->speed + first, 0, count * sizeof(double));
+    memset(f->kind + first, ILSA_CELL_EMPTY, count);
+    for (size_t k = first; k < first + count; k++) {
+        f->level[k] = INFINITY;
+    }
+    if (f->trigger) {
+        memset(f->leaked + first, 0, count * sizeof(double));
+        for (size_t k = first; k < first + count; k++) {
+            f->trigger[k] = INFINITY;
+        }
+    }
+}
+
+void ilsai_fields_clear(fields *f, size_t count) {
+    clear_range(f, 0, count);
+}
+
+void ilsai_fields_clear_box(fields *f, const ilsa_mesh_def *mesh, const box *b) {
+    for (int j = b->y0; j <= b->y1; j++) {
+        clear_range(f, (size_t)j * (size_t)mesh->nx + (size_t)b->x0, (size_t)(b->x1 - b->x0 + 1));
+    }
+}
+
+ilsa_status ilsai_tip_records_reserve(tip_records *r, int count) {
+    if (count <= r->capacity) {
+        return ILSA_OK;
+    }
+    size_t capacity = (size_t)count + (size_t)count / 2 + 16;
+    tip_record *at = realloc(r->at, capacity * sizeof *at);
+    if (!at) {
+        return ILSA_ERR_MEMORY;
+    }
+    r->at = at;
+    r->capacity = (int)capacity;
+    return ILSA_OK;
+}
+
+static int by_cell(const void *a, const void *b) {
+    int p = ((const tip_record *)a)->cell, q = ((const tip_record *)b)->cell;
+    return (p > q) - (p < q);
+}
+
+void ilsai_tip_records_sort(tip_records *r) {
+    if (r->count > 0) {
+        qsort(r->at, (size_t)r->count, sizeof *r->at, by_cell);
+    }
+}
+
+const tip_record *ilsai_tip_records_find(const tip_records *r, int cell) {
+    tip_record key = {.cell = cell};
+    return r->count > 0 ? bsearch(&key, r->at, (size_t)r->count, sizeof key, by_cell) : NULL;
+}

@@ -1,0 +1,302 @@
+#include "front.h"
+
+#include <ilsa/solver.h>
+#include <math.h>
+#include <stdlib.h>
+
+/* A cell's value as seen by its neighbours while the march goes on. */
+typedef struct node {
+    double T, V, K_num, K_den;
+    double cos_a, sin_a;
+    int cell;
+    int place; /* in the heap, -1 when accepted */
+} node;
+
+struct front {
+    node *nodes; /* seeds first, then every cell touched */
+    int *heap;   /* node numbers, smallest T first */
+    front_cell *cells;
+    int *node_of; /* per cell of the region: node number or -1 */
+    int node_count, node_capacity;
+    int heap_count, cell_count;
+    size_t region_capacity;
+    box region;
+};
+
+front *ilsai_front_create(void) {
+    return calloc(1, sizeof(front));
+}
+
+void ilsai_front_destroy(front **f) {
+    if (*f) {
+        free((*f)->nodes);
+        free((*f)->heap);
+        free((*f)->cells);
+        free((*f)->node_of);
+        free(*f);
+        *f = NULL;
+    }
+}
+
+const front_cell *ilsai_front_cells(const front *f, int *count) {
+    *count = f->cell_count;
+    return f->cells;
+}
+
+static ilsa_status reserve_nodes(front *f, int count) {
+    if (count <= f->node_capacity) {
+        return ILSA_OK;
+    }
+    size_t capacity = (size_t)count + (size_t)count / 2 + 64;
+    node *nodes = realloc(f->nodes, capacity * sizeof *nodes);
+    f->nodes = nodes ? nodes : f->nodes;
+    int *heap = realloc(f->heap, capacity * sizeof *heap);
+    f->heap = heap ? heap : f->heap;
+    front_cell *cells = realloc(f->cells, capacity * sizeof *cells);
+    f->cells = cells ? cells : f->cells;
+    if (!nodes || !heap || !cells) {
+        return ILSA_ERR_MEMORY;
+    }
+    f->node_capacity = (int)capacity;
+    return ILSA_OK;
+}
+
+static ilsa_status set_region(front *f, const box *region) {
+    size_t width = (size_t)(region->x1 - region->x0 + 1);
+    size_t size = width * (size_t)(region->y1 - region->y0 + 1);
+    if (size > f->region_capacity) {
+        size_t capacity = size + size / 2;
+        int *node_of = realloc(f->node_of, capacity * sizeof *node_of);
+        if (!node_of) {
+            return ILSA_ERR_MEMORY;
+        }
+        f->node_of = node_of;
+        f->region_capacity = capacity;
+    }
+    for (size_t k = 0; k < size; k++) {
+        f->node_of[k] = -1;
+    }
+    f->region = *region;
+    f->node_count = f->heap_count = f->cell_count = 0;
+    return ILSA_OK;
+}
+
+static int *node_slot(const front *f, const grid *g, int cell) {
+    int i = cell % g->nx, j = cell / g->nx;
+    const box *r = &f->region;
+    if (i < r->x0 || i > r->x1 || j < r->y0 || j > r->y1) {
+        return NULL;
+    }
+    return &f->node_of[(j - r->y0) * (r->x1 - r->x0 + 1) + (i - r->x0)];
+}
+
+static void place(front *f, int at, int number) {
+    f->heap[at] = number;
+    f->nodes[number].place = at;
+}
+
+/* Order of the march; equal distances go by cell so that the order never depends on the heap. */
+static int before(const front *f, int a, int b) {
+    const node *p = &f->nodes[a], *q = &f->nodes[b];
+    return p->T < q->T || (p->T == q->T && p->cell < q->cell);
+}
+
+static void sift_up(front *f, int at) {
+    int number = f->heap[at];
+    while (at > 0 && before(f, number, f->heap[(at - 1) / 2])) {
+        place(f, at, f->heap[(at - 1) / 2]);
+        at = (at - 1) / 2;
+    }
+    place(f, at, number);
+}
+
+static void sift_down(front *f, int at) {
+    int number = f->heap[at];
+    for (;;) {
+        int child = 2 * at + 1;
+        if (child >= f->heap_count) {
+            break;
+        }
+        if (child + 1 < f->heap_count && before(f, f->heap[child + 1], f->heap[child])) {
+            child++;
+        }
+        if (!before(f, f->heap[child], number)) {
+            break;
+        }
+        place(f, at, f->heap[child]);
+        at = child;
+    }
+    place(f, at, number);
+}
+
+static int pop(front *f) {
+    int number = f->heap[0];
+    f->nodes[number].place = -1;
+    f->heap_count--;
+    if (f->heap_count > 0) {
+        f->heap[0] = f->heap[f->heap_count];
+        sift_down(f, 0);
+    }
+    return number;
+}
+
+/* The accepted neighbour with the smaller T on one axis; NULL if neither is accepted. */
+static const node *upwind(const front *f, const grid *g, int i, int j, int face_a, int face_b) {
+    const node *best = NULL;
+    const int faces[2] = {face_a, face_b};
+    for (int k = 0; k < 2; k++) {
+        int cell = ilsai_grid_neighbour(g, i, j, faces[k]);
+        const int *slot = cell >= 0 ? node_slot(f, g, cell) : NULL;
+        if (slot && *slot >= 0 && f->nodes[*slot].place < 0) {
+            const node *candidate = &f->nodes[*slot];
+            best = !best || candidate->T < best->T ? candidate : best;
+        }
+    }
+    return best;
+}
+
+static void one_sided(node *n, const node *from, double h, int along_x) {
+    n->T = from->T + h;
+    n->V = from->V;
+    n->K_num = from->K_num;
+    n->K_den = from->K_den;
+    n->cos_a = along_x ? 1 : 0;
+    n->sin_a = along_x ? 0 : 1;
+}
+
+/*
+ * The plane through two neighbours with unit slope, (4.12). The velocity is the derivative of
+ * that T, so the neighbours weigh by the slopes cos a / dx and sin a / dy. Returns 0 where the
+ * plane does not come from between them.
+ */
+static int two_sided(node *n, const node *a, const node *b, double dx, double dy) {
+    double diagonal = sqrt(dx * dx + dy * dy);
+    double difference = (b->T - a->T) / diagonal;
+    double root = 1 - difference * difference;
+    if (root < 0) {
+        return 0;
+    }
+    double theta = dx * dy * sqrt(root) / diagonal;
+    double wx = dy * dy / (diagonal * diagonal), wy = dx * dx / (diagonal * diagonal);
+    double T = wx * a->T + wy * b->T + theta;
+    double cos_a = (T - a->T) / dx, sin_a = (T - b->T) / dy;
+    if (cos_a <= 0 || sin_a <= 0) {
+        return 0;
+    }
+    double slope = cos_a / dx + sin_a / dy;
+    n->T = T;
+    n->cos_a = cos_a;
+    n->sin_a = sin_a;
+    n->V = (cos_a / dx * a->V + sin_a / dy * b->V) / slope;
+    n->K_num = a->K_num + b->K_num;
+    n->K_den = a->K_den + b->K_den;
+    return 1;
+}
+
+static void update(const front *f, const grid *g, node *n) {
+    int i = n->cell % g->nx, j = n->cell / g->nx;
+    const node *a = upwind(f, g, i, j, GRID_LEFT, GRID_RIGHT);
+    const node *b = upwind(f, g, i, j, GRID_DOWN, GRID_UP);
+    if (a && b && two_sided(n, a, b, g->dx, g->dy)) {
+        return;
+    }
+    if (a && (!b || a->T + g->dx <= b->T + g->dy)) {
+        one_sided(n, a, g->dx, 1);
+    } else {
+        one_sided(n, b, g->dy, 0);
+    }
+}
+
+static ilsa_status add_seed(front *f, const grid *g, const front_seed *seed) {
+    int *slot = node_slot(f, g, seed->cell);
+    if (!slot) {
+        return ILSA_OK;
+    }
+    if (reserve_nodes(f, f->node_count + 1) != ILSA_OK) {
+        return ILSA_ERR_MEMORY;
+    }
+    node n = {-seed->s, seed->V, seed->w * sqrt(seed->s), seed->s, 0, 0, seed->cell, -1};
+    *slot = f->node_count;
+    f->nodes[f->node_count++] = n;
+    return ILSA_OK;
+}
+
+/* Takes cell (i, j)'s neighbour across a face into the heap, or improves it there. */
+static ilsa_status touch(front *f, const grid *g, const unsigned char *kind, int i, int j,
+                         int face) {
+    int cell = ilsai_grid_neighbour(g, i, j, face);
+    int *slot = cell >= 0 ? node_slot(f, g, cell) : NULL;
+    if (!slot || kind[cell] >= ILSA_CELL_SURVEY) {
+        return ILSA_OK;
+    }
+    if (*slot < 0) {
+        if (reserve_nodes(f, f->node_count + 1) != ILSA_OK) {
+            return ILSA_ERR_MEMORY;
+        }
+        *slot = f->node_count++;
+        f->nodes[*slot] = (node){.T = INFINITY, .cell = cell, .place = f->heap_count};
+        f->heap[f->heap_count++] = *slot;
+    }
+    node *n = &f->nodes[*slot];
+    if (n->place >= 0) {
+        update(f, g, n);
+        sift_up(f, n->place);
+        sift_down(f, n->place);
+    }
+    return ILSA_OK;
+}
+
+static ilsa_status touch_all(front *f, const grid *g, const unsigned char *kind, int cell) {
+    for (int face = 0; face < GRID_FACES; face++) {
+        ilsa_status status = touch(f, g, kind, cell % g->nx, cell / g->nx, face);
+        if (status != ILSA_OK) {
+            return status;
+        }
+    }
+    return ILSA_OK;
+}
+
+static void accept(front *f, const grid *g, const node *n, double *level) {
+    front_cell c = {.cell = n->cell, .T = n->T, .cos_a = n->cos_a, .sin_a = n->sin_a};
+    c.ell = 0.5 * ilsai_front_full(g, n->cos_a, n->sin_a) - n->T;
+    c.V = n->V;
+    c.K_num = n->K_num;
+    c.K_den = n->K_den;
+    f->cells[f->cell_count++] = c;
+    level[n->cell] = n->T;
+}
+
+static void clear_level(const grid *g, const box *region, const unsigned char *kind,
+                        double *level) {
+    for (int j = region->y0; j <= region->y1; j++) {
+        for (int i = region->x0; i <= region->x1; i++) {
+            int cell = ilsai_grid_cell(g, i, j);
+            if (kind[cell] < ILSA_CELL_SURVEY) {
+                level[cell] = INFINITY;
+            }
+        }
+    }
+}
+
+ilsa_status ilsai_front_march(front *f, const grid *g, const box *region, const unsigned char *kind,
+                              const front_seed *seeds, int seed_count, double limit,
+                              double *level) {
+    ilsa_status status = set_region(f, region);
+    clear_level(g, region, kind, level);
+    for (int k = 0; k < seed_count && status == ILSA_OK; k++) {
+        status = add_seed(f, g, &seeds[k]);
+        level[seeds[k].cell] = -seeds[k].s;
+    }
+    for (int k = 0; k < seed_count && status == ILSA_OK; k++) {
+        status = touch_all(f, g, kind, seeds[k].cell);
+    }
+    while (status == ILSA_OK && f->heap_count > 0) {
+        node n = f->nodes[pop(f)];
+        if (n.T > limit) {
+            break;
+        }
+        accept(f, g, &n, level);
+        status = touch_all(f, g, kind, n.cell);
+    }
+    return status;
+}

@@ -1,0 +1,52 @@
+/*
+ * The level-set front: distances of the survey cells extended outwards by fast marching (4.10) to
+ * (4.12), and what the front is in each cell that it reaches (4.13).
+ */
+#ifndef ILSAI_FRONT_H
+#define ILSAI_FRONT_H
+
+#include "grid.h"
+#include "tip.h"
+
+/* A survey cell: where the marching starts. */
+typedef struct front_seed {
+    int cell;
+    double s0; /* distance to the front at the start of the step */
+    double h;  /* cell size along the normal */
+    double s;  /* distance now */
+    double V;  /* (s - s0) / dt */
+    double w;  /* width that s and V answer to */
+} front_seed;
+
+/* A cell outside the channel that the marching reached, in the order of distance. */
+typedef struct front_cell {
+    int cell;
+    double T;            /* signed distance of its centre: negative inside, (4.11) */
+    double cos_a, sin_a; /* normal of the front, reflected into 0 .. pi/2 */
+    double ell;          /* distance of the front from the farthest interior corner, (4.13) */
+    double V;            /* velocity of the front, from the survey cells upwind */
+    double K_num, K_den; /* sums of w s^(1/2) and s over them: E' times their ratio is (4.19) */
+} front_cell;
+
+typedef struct front front;
+
+front *ilsai_front_create(void);
+void ilsai_front_destroy(front **f);
+
+/*
+ * Marches from the seeds into the cells of `region` (representative cells) whose kind is not
+ * channel or survey, until T exceeds limit. level[] takes the seeds' -s and each reached T; the
+ * other non-channel cells of the region take infinity. ILSA_ERR_MEMORY.
+ */
+ilsa_status ilsai_front_march(front *f, const grid *g, const box *region, const unsigned char *kind,
+                              const front_seed *seeds, int seed_count, double limit, double *level);
+
+/* What the last march reached. */
+const front_cell *ilsai_front_cells(const front *f, int *count);
+
+/* dx cos a + dy sin a: the ell at which a cell is full. */
+static inline double ilsai_front_full(const grid *g, double cos_a, double sin_a) {
+    return g->dx * cos_a + g->dy * sin_a;
+}
+
+#endif

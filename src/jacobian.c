@@ -1,0 +1,263 @@
+#include "jacobian.h"
+
+#include "clock.h"
+#include <ilsa/solver.h>
+#include <lapacke.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+void ilsai_jacobian_destroy(jacobian *m) {
+    free(m->width);
+    free(m->pressure);
+    free(m->band);
+    free(m->full);
+    free(m->influence);
+    free(m->pivots);
+    memset(m, 0, sizeof *m);
+}
+
+/* Pressure changes that the width changes x of the channel cells bring about, and the tip's own. */
+static void apply_elasticity(jacobian *m, const double *x) {
+    const active *a = m->a;
+    int image[4];
+    for (int k = 0; k < a->count; k++) {
+        int cell = a->cell[k];
+        int count = ilsai_grid_images(m->g, cell % m->g->nx, cell / m->g->nx, image);
+        for (int c = 0; c < count; c++) {
+            m->width[image[c]] = a->tip[k] ? 0 : x[k];
+        }
+    }
+    double start = ilsai_clock();
+    size_t corner = (size_t)ilsai_grid_cell(m->g, a->footprint.x0, a->footprint.y0);
+    ilsai_elasticity_multiply(m->e, m->width + corner, m->pressure + corner, (size_t)m->g->nx);
+    m->seconds_product += ilsai_clock() - start;
+    m->products++;
+    for (int k = 0; k < a->count; k++) {
+        if (a->tip[k]) {
+            m->pressure[a->cell[k]] = x[k];
+        }
+    }
+}
+
+static void clear_width(jacobian *m) {
+    const active *a = m->a;
+    int image[4];
+    for (int k = 0; k < a->count; k++) {
+        int cell = a->cell[k];
+        int count = ilsai_grid_images(m->g, cell % m->g->nx, cell / m->g->nx, image);
+        for (int c = 0; c < count; c++) {
+            m->width[image[c]] = 0;
+        }
+    }
+}
+
+void ilsai_jacobian_multiply(void *context, const double *x, double *y) {
+    jacobian *m = context;
+    const active *a = m->a;
+    apply_elasticity(m, x);
+    ilsai_flow_gain(m->f, a, m->pressure, y);
+    for (int k = 0; k < a->count; k++) {
+        double w = m->width[a->cell[k]], from_width = 0;
+        for (int face = 0; face < GRID_FACES; face++) {
+            int at = GRID_FACES * k + face, other = a->neighbour[at];
+            if (other >= 0) {
+                from_width += m->f->slope[at] * (w + m->width[a->cell[other]]);
+            }
+        }
+        y[k] = w - from_width - y[k];
+    }
+    clear_width(m);
+}
+
+/* Receives the entry of a row in a column. */
+typedef void entry_sink(jacobian *m, int row, int column, double value);
+
+/* What the pressure of active cell b, weighing value in a row, is in terms of the unknowns. */
+static void spread_pressure(jacobian *m, int row, int b, double value, entry_sink *sink) {
+    const active *a = m->a;
+    if (a->tip[b]) {
+        sink(m, row, b, value);
+        return;
+    }
+    int ib = a->cell[b] % m->g->nx, jb = a->cell[b] / m->g->nx;
+    for (int dj = -1; dj <= 1; dj++) {
+        for (int di = -1; di <= 1; di++) {
+            int i = ib + di, j = jb + dj;
+            if (i < 0 || i >= m->g->nx || j < 0 || j >= m->g->ny) {
+                continue;
+            }
+            int column = a->slot[ilsai_grid_fold(m->g, i, j)];
+            if (column >= 0 && !a->tip[column]) {
+                sink(m, row, column, value * ilsai_elasticity_entry(m->e, di, dj));
+            }
+        }
+    }
+}
+
+static void visit_row(jacobian *m, int row, entry_sink *sink) {
+    const active *a = m->a;
+    double diagonal = a->tip[row] ? 0 : 1, own_pressure = 0;
+    for (int face = 0; face < GRID_FACES; face++) {
+        int at = GRID_FACES * row + face, other = a->neighbour[at];
+        if (other < 0) {
+            continue;
+        }
+        own_pressure += m->f->conductance[at];
+        spread_pressure(m, row, other, -m->f->conductance[at], sink);
+        if (!a->tip[other]) {
+            sink(m, row, other, -m->f->slope[at]);
+        }
+        diagonal -= a->tip[row] ? 0 : m->f->slope[at];
+    }
+    spread_pressure(m, row, row, own_pressure, sink);
+    if (!a->tip[row]) {
+        sink(m, row, row, diagonal);
+    }
+}
+
+static void measure_band(jacobian *m, int row, int column, double value) {
+    (void)value;
+    int distance = row > column ? row - column : column - row;
+    m->lower = distance > m->lower ? distance : m->lower;
+}
+
+static void add_to_band(jacobian *m, int row, int column, double value) {
+    size_t rows = 3 * (size_t)m->lower + 1;
+    m->band[(size_t)column * rows + (size_t)(2 * m->lower + row - column)] += value;
+}
+
+static ilsa_status reserve(double **array, size_t *capacity, size_t size) {
+    if (size > *capacity) {
+        size_t grown = size + size / 2;
+        double *fresh = malloc(grown * sizeof *fresh);
+        if (!fresh) {
+            return ILSA_ERR_MEMORY;
+        }
+        free(*array);
+        *array = fresh;
+        *capacity = grown;
+    }
+    return ILSA_OK;
+}
+
+static ilsa_status reserve_pivots(jacobian *m) {
+    size_t size = (size_t)m->a->count;
+    if (size > m->pivot_capacity) {
+        size_t grown = size + size / 2;
+        int *fresh = malloc(grown * sizeof *fresh);
+        if (!fresh) {
+            return ILSA_ERR_MEMORY;
+        }
+        free(m->pivots);
+        m->pivots = fresh;
+        m->pivot_capacity = grown;
+    }
+    return ILSA_OK;
+}
+
+ilsa_status ilsai_jacobian_factor_stencil(jacobian *m) {
+    double start = ilsai_clock();
+    int n = m->a->count;
+    m->lower = 0;
+    for (int row = 0; row < n; row++) {
+        visit_row(m, row, measure_band);
+    }
+    size_t size = (3 * (size_t)m->lower + 1) * (size_t)n;
+    if (reserve(&m->band, &m->band_capacity, size) != ILSA_OK || reserve_pivots(m) != ILSA_OK) {
+        return ILSA_ERR_MEMORY;
+    }
+    memset(m->band, 0, size * sizeof *m->band);
+    for (int row = 0; row < n; row++) {
+        visit_row(m, row, add_to_band);
+    }
+    lapack_int info = LAPACKE_dgbtrf_work(LAPACK_COL_MAJOR, n, n, m->lower, m->lower, m->band,
+                                          3 * m->lower + 1, m->pivots);
+    m->seconds_preconditioner += ilsai_clock() - start;
+    return info == 0 ? ILSA_OK : ILSA_ERR_NUMERIC;
+}
+
+void ilsai_jacobian_precondition(void *context, const double *x, double *y) {
+    jacobian *m = context;
+    double start = ilsai_clock();
+    memcpy(y, x, (size_t)m->a->count * sizeof *y);
+    LAPACKE_dgbtrs_work(LAPACK_COL_MAJOR, 'N', m->a->count, m->lower, m->lower, 1, m->band,
+                        3 * m->lower + 1, m->pivots, y, m->a->count);
+    m->seconds_preconditioner += ilsai_clock() - start;
+}
+
+/* C between cells a and b, b's images included. */
+static double folded_entry(const jacobian *m, int a, int b) {
+    int image[4], nx = m->g->nx, cell = m->a->cell[b], here = m->a->cell[a];
+    int count = ilsai_grid_images(m->g, cell % nx, cell / nx, image);
+    double sum = 0;
+    for (int c = 0; c < count; c++) {
+        sum += ilsai_elasticity_entry(m->e, here % nx - image[c] % nx, here / nx - image[c] / nx);
+    }
+    return sum;
+}
+
+ilsa_status ilsai_jacobian_set_influence(jacobian *m) {
+    double start = ilsai_clock();
+    size_t n = (size_t)m->a->count, capacity = m->full_capacity;
+    if (reserve(&m->full, &capacity, n * n) != ILSA_OK ||
+        reserve(&m->influence, &m->full_capacity, n * n) != ILSA_OK ||
+        reserve_pivots(m) != ILSA_OK) {
+        return ILSA_ERR_MEMORY;
+    }
+    for (size_t row = 0; row < n; row++) {
+        for (size_t column = 0; column < n; column++) {
+            double value = 0;
+            if (m->a->tip[row] || m->a->tip[column]) {
+                value = m->a->tip[row] && row == column ? 1 : 0;
+            } else {
+                value = folded_entry(m, (int)row, (int)column);
+            }
+            m->influence[row * n + column] = value;
+        }
+    }
+    m->seconds_preconditioner += ilsai_clock() - start;
+    return ILSA_OK;
+}
+
+/* Row k of the full matrix, stored as a column of the transpose. */
+static void fill_full_row(jacobian *m, int row) {
+    const active *a = m->a;
+    size_t n = (size_t)a->count;
+    double *out = m->full + (size_t)row * n, total = 0, diagonal = 1;
+    memset(out, 0, n * sizeof *out);
+    for (int face = 0; face < GRID_FACES; face++) {
+        int at = GRID_FACES * row + face, other = a->neighbour[at];
+        if (other < 0) {
+            continue;
+        }
+        const double *influence = m->influence + (size_t)other * n;
+        double conductance = m->f->conductance[at];
+        for (size_t c = 0; c < n; c++) {
+            out[c] -= conductance * influence[c];
+        }
+        out[other] -= a->tip[other] ? 0 : m->f->slope[at];
+        diagonal -= m->f->slope[at];
+        total += conductance;
+    }
+    const double *influence = m->influence + (size_t)row * n;
+    for (size_t c = 0; c < n; c++) {
+        out[c] += total * influence[c];
+    }
+    out[row] += a->tip[row] ? 0 : diagonal;
+}
+
+ilsa_status ilsai_jacobian_solve_full(jacobian *m, const double *b, double *x) {
+    double start = ilsai_clock();
+    int n = m->a->count;
+    for (int row = 0; row < n; row++) {
+        fill_full_row(m, row);
+    }
+    lapack_int info = LAPACKE_dgetrf_work(LAPACK_COL_MAJOR, n, n, m->full, n, m->pivots);
+    memcpy(x, b, (size_t)n * sizeof *x);
+    if (info == 0) {
+        LAPACKE_dgetrs_work(LAPACK_COL_MAJOR, 'T', n, 1, m->full, n, m->pivots, x, n);
+    }
+    m->seconds_preconditioner += ilsai_clock() - start;
+    return info == 0 ? ILSA_OK : ILSA_ERR_NUMERIC;
+}

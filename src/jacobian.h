@@ -1,0 +1,45 @@
+/*
+ * The Newton matrix D - dt A [C_cc, I] of the coupled system: its product through the elasticity
+ * product, its preconditioner with C cut to its 3 x 3 stencil, and its full form.
+ *
+ * Columns: the width of a channel cell, the pressure of a tip cell. Rows: the volume balance.
+ */
+#ifndef ILSAI_JACOBIAN_H
+#define ILSAI_JACOBIAN_H
+
+#include "active.h"
+#include "elasticity.h"
+#include "flow.h"
+
+typedef struct jacobian {
+    const grid *g;
+    const active *a;
+    const flow *f;
+    elasticity *e;
+    double *width, *pressure; /* work over the mesh; width is zero outside the channel cells */
+    double *band;             /* LAPACK band storage, factored */
+    double *full;             /* LAPACK storage of the transpose, factored */
+    double *influence;        /* folded C between active cells, one row a cell */
+    int *pivots;
+    size_t band_capacity, full_capacity, pivot_capacity;
+    int lower; /* sub- and superdiagonals of the band */
+    long products;
+    double seconds_product, seconds_preconditioner;
+} jacobian;
+
+/* y = M x, and y = P^-1 x with the factored stencil matrix: gmres_operator on a jacobian. */
+void ilsai_jacobian_multiply(void *context, const double *x, double *y);
+void ilsai_jacobian_precondition(void *context, const double *x, double *y);
+
+/* Assembles and factors the stencil matrix. ILSA_ERR_MEMORY; ILSA_ERR_NUMERIC if singular. */
+ilsa_status ilsai_jacobian_factor_stencil(jacobian *m);
+
+/* The influence matrix of the active cells, for ilsai_jacobian_solve_full. ILSA_ERR_MEMORY. */
+ilsa_status ilsai_jacobian_set_influence(jacobian *m);
+
+/* Solves M x = b by dense LU. ILSA_ERR_NUMERIC if singular. */
+ilsa_status ilsai_jacobian_solve_full(jacobian *m, const double *b, double *x);
+
+void ilsai_jacobian_destroy(jacobian *m);
+
+#endif

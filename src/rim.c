@@ -1,0 +1,197 @@
+#include "rim.h"
+
+#include "tuning.h"
+#include <math.h>
+
+/* Volume leaked per area from a channel cell in the step, (4.8). */
+static double channel_leak(const ilsa_solver *s, int cell, double dt) {
+    double age = s->now.time - s->field.trigger[cell];
+    age = age > 0 ? age : 0;
+    return 2 * s->material.C_prime * dt / (sqrt(age + dt) + sqrt(age));
+}
+
+static void add_sources(ilsa_solver *s, double dt) {
+    for (int k = 0; k < s->def.source_count; k++) {
+        const point_source *from = &s->sources[k];
+        for (int c = 0; c < from->count; c++) {
+            s->gain[from->cell[c]] +=
+                from->def.rate * from->part[c] * dt / (s->mesh.dx * s->mesh.dy);
+        }
+    }
+}
+
+static ilsa_status check_sources(ilsa_solver *s) {
+    for (int k = 0; k < s->def.source_count; k++) {
+        const point_source *from = &s->sources[k];
+        for (int c = 0; c < from->count; c++) {
+            if (from->def.rate > 0 && s->field.kind[from->cell[c]] == ILSA_CELL_EMPTY) {
+                return ilsai_fail(&s->error, ILSA_ERR_STATE,
+                                  "source %d at (%g, %g) injects outside the fracture", k,
+                                  from->def.x, from->def.y);
+            }
+        }
+    }
+    return ILSA_OK;
+}
+
+ilsa_status ilsai_rim_begin(ilsa_solver *s, double dt) {
+    box part = ilsai_box_fold(&s->g, &s->region);
+    for (int j = part.y0; j <= part.y1; j++) {
+        for (int i = part.x0; i <= part.x1; i++) {
+            int cell = ilsai_grid_cell(&s->g, i, j);
+            int channel = s->field.kind[cell] >= ILSA_CELL_SURVEY;
+            s->leak[cell] = channel && ilsai_has_leakoff(s) ? channel_leak(s, cell, dt) : 0;
+            s->gain[cell] = -s->leak[cell];
+        }
+    }
+    ilsa_status status = check_sources(s);
+    if (status == ILSA_OK) {
+        add_sources(s, dt);
+    }
+    return status;
+}
+
+static void set_width(ilsa_solver *s, int cell, double width) {
+    int image[4];
+    int count = ilsai_grid_images(&s->g, cell % s->g.nx, cell / s->g.nx, image);
+    for (int k = 0; k < count; k++) {
+        s->trial.width[image[k]] = width;
+    }
+}
+
+/* Injection alone: what the source terms of a cell are before any leak-off of this pass. */
+static void set_leak(ilsa_solver *s, int cell, double leak) {
+    s->gain[cell] += s->leak[cell] - leak;
+    s->leak[cell] = leak;
+}
+
+/* Cells of the pass before that the march no longer reaches. */
+static ilsa_status drop_unreached(ilsa_solver *s) {
+    box part = ilsai_box_fold(&s->g, &s->region);
+    for (int j = part.y0; j <= part.y1; j++) {
+        for (int i = part.x0; i <= part.x1; i++) {
+            int cell = ilsai_grid_cell(&s->g, i, j);
+            if (isfinite(s->trial.level[cell]) || s->trial.kind[cell] == ILSA_CELL_EMPTY ||
+                s->field.kind[cell] >= ILSA_CELL_SURVEY) {
+                continue;
+            }
+            if (s->field.kind[cell] == ILSA_CELL_TIP) {
+                return ilsai_fail(&s->error, ILSA_STEP_REJECTED,
+                                  "tip cell (%d, %d) is out of the front's reach", i, j);
+            }
+            s->trial.kind[cell] = ILSA_CELL_EMPTY;
+            set_width(s, cell, 0);
+            set_leak(s, cell, 0);
+        }
+    }
+    return ILSA_OK;
+}
+
+static unsigned char classify(const ilsa_solver *s, const front_cell *c) {
+    double full = ilsai_front_full(&s->g, c->cos_a, c->sin_a);
+    if (c->ell >= full) {
+        return ILSA_CELL_CHANNEL;
+    }
+    int wet = c->ell > ILSAI_WET_MIN * ilsai_grid_h(&s->g);
+    return wet || s->field.kind[c->cell] == ILSA_CELL_TIP ? ILSA_CELL_TIP : ILSA_CELL_EMPTY;
+}
+
+/* The path of the front in the cell up to the end of the step. */
+static tipcell_history path_in_cell(const ilsa_solver *s, const front_cell *c, double dt) {
+    double t = s->now.time + dt;
+    const tip_record *record = ilsai_tip_records_find(&s->tips, c->cell);
+    tipcell_history history;
+    if (record) {
+        history = record->history;
+    } else {
+        double since = c->V > 0 ? c->ell / c->V : dt;
+        since = since > dt ? dt : since;
+        since = since < 1e-6 * dt ? 1e-6 * dt : since;
+        ilsai_tipcell_enter(&history, t - since);
+    }
+    ilsai_tipcell_record(&history, t, c->ell > 0 ? c->ell : 0);
+    return history;
+}
+
+/* Leak-off (4.25): all that has leaked until now less what had before, never less than nothing. */
+static void leak_at_front(ilsa_solver *s, const front_cell *c, double dt) {
+    tip_record *record = &s->trial_tips.at[s->trial_tips.count++];
+    tipcell_front at = {c->ell, c->cos_a, c->sin_a, s->g.dx, s->g.dy};
+    record->cell = c->cell;
+    record->history = path_in_cell(s, c, dt);
+    double total = ilsai_tipcell_leakoff(s->material.C_prime, &at, &record->history);
+    double leak = total / (s->g.dx * s->g.dy) - s->field.leaked[c->cell];
+    set_leak(s, c->cell, leak > 0 ? leak : 0);
+}
+
+/* Mean width (4.18); in a cell that has just filled it is the first guess of the coupled solve. */
+static double mean_width(const ilsa_solver *s, const front_cell *c) {
+    tipcell_front at = {c->ell, c->cos_a, c->sin_a, s->g.dx, s->g.dy};
+    double K_I = s->material.E_prime * c->K_num / c->K_den;
+    double V = c->V > 0 ? c->V : 0;
+    return ilsai_tipcell_volume(&s->material, V, K_I, &at) / (s->g.dx * s->g.dy);
+}
+
+static void set_cell(ilsa_solver *s, const front_cell *c, double dt) {
+    unsigned char was = s->trial.kind[c->cell], kind = classify(s, c);
+    s->trial.kind[c->cell] = kind;
+    s->trial.speed[c->cell] = c->V;
+    if (kind == ILSA_CELL_EMPTY) {
+        set_width(s, c->cell, 0);
+        set_leak(s, c->cell, 0);
+        return;
+    }
+    if (kind == ILSA_CELL_TIP || was != ILSA_CELL_CHANNEL) {
+        set_width(s, c->cell, mean_width(s, c));
+    }
+    if (ilsai_has_leakoff(s)) {
+        leak_at_front(s, c, dt);
+    }
+}
+
+/* A tip cell wetted in this step starts from the pressure of a wet neighbour. */
+static void guess_pressure(ilsa_solver *s, const front_cell *c) {
+    if (s->field.kind[c->cell] != ILSA_CELL_EMPTY || s->trial.pressure[c->cell] != 0) {
+        return;
+    }
+    for (int face = 0; face < GRID_FACES; face++) {
+        int cell = ilsai_grid_neighbour(&s->g, c->cell % s->g.nx, c->cell / s->g.nx, face);
+        if (cell >= 0 && s->trial.kind[cell] != ILSA_CELL_EMPTY && s->trial.pressure[cell] != 0) {
+            s->trial.pressure[c->cell] = s->trial.pressure[cell];
+        }
+    }
+}
+
+/* The footprint with the cell and its images; 0 if it touches the edge of the mesh. */
+static int grow_footprint(ilsa_solver *s, int cell) {
+    int image[4];
+    int count = ilsai_grid_images(&s->g, cell % s->g.nx, cell / s->g.nx, image);
+    for (int k = 0; k < count; k++) {
+        ilsai_box_add(&s->trial_footprint, image[k] % s->g.nx, image[k] / s->g.nx);
+    }
+    const box *b = &s->trial_footprint;
+    return b->x0 > 0 && b->y0 > 0 && b->x1 < s->g.nx - 1 && b->y1 < s->g.ny - 1;
+}
+
+ilsa_status ilsai_rim_set(ilsa_solver *s, double dt) {
+    int count;
+    const front_cell *cells = ilsai_front_cells(s->march, &count);
+    if (ilsai_has_leakoff(s) && ilsai_tip_records_reserve(&s->trial_tips, count) != ILSA_OK) {
+        return ILSA_ERR_MEMORY;
+    }
+    ilsa_status status = drop_unreached(s);
+    s->trial_tips.count = 0;
+    s->trial_footprint = s->now.footprint;
+    for (int k = 0; k < count && status == ILSA_OK; k++) {
+        set_cell(s, &cells[k], dt);
+        if (s->trial.kind[cells[k].cell] != ILSA_CELL_EMPTY) {
+            guess_pressure(s, &cells[k]);
+            if (!grow_footprint(s, cells[k].cell)) {
+                status = ilsai_fail(&s->error, ILSA_MESH_EDGE,
+                                    "the footprint reaches the edge of the mesh of %d x %d cells",
+                                    s->g.nx, s->g.ny);
+            }
+        }
+    }
+    return status;
+}

@@ -1,0 +1,19 @@
+/*
+ * The cells at the front in one pass of a step: after the march, which are wet, their widths (4.18)
+ * and leak-off (4.25), and the source terms of the channel (4.8).
+ */
+#ifndef ILSAI_RIM_H
+#define ILSAI_RIM_H
+
+#include "state.h"
+
+/* Source terms of the cells that were channel when the step began: they hold for all passes. */
+ilsa_status ilsai_rim_begin(ilsa_solver *s, double dt);
+
+/*
+ * Kinds, tip widths, leak-off and footprint for the front as marched. ILSA_MESH_EDGE,
+ * ILSA_ERR_MEMORY, ILSA_STEP_REJECTED (a wet cell is out of the front's reach).
+ */
+ilsa_status ilsai_rim_set(ilsa_solver *s, double dt);
+
+#endif

@@ -1,0 +1,134 @@
+/* The solver's own data: what changes, what a step works with, and what stays. */
+#ifndef ILSAI_STATE_H
+#define ILSAI_STATE_H
+
+#include "anderson.h"
+#include "coupled.h"
+#include "elasticity.h"
+#include "error.h"
+#include "front.h"
+#include "grid.h"
+#include "mesh.h"
+#include "stress.h"
+#include "tipcell.h"
+#include <ilsa/ilsa.h>
+
+/* Fields over the mesh. Cells out of reach: width, pressure, speed, leaked 0; level infinite. */
+typedef struct fields {
+    double *width;
+    double *pressure; /* total fluid pressure */
+    double *level;    /* signed distance to the front; in old channel cells what it last was */
+    double *speed;    /* of the front, where it is or last was seen from the cell */
+    double *trigger;  /* time at which the front passed the centre; only with leak-off */
+    double *leaked;   /* volume leaked per area so far; only with leak-off */
+    unsigned char *kind;
+} fields;
+
+/* Where the front has been in a tip cell; kept only with leak-off. */
+typedef struct tip_record {
+    int cell;
+    tipcell_history history;
+} tip_record;
+
+typedef struct tip_records {
+    tip_record *at; /* in increasing order of cell */
+    int count, capacity;
+} tip_records;
+
+/* All that a step changes, and all that a snapshot keeps besides the fields. */
+typedef struct state {
+    int started;
+    int mirror_x, mirror_y; /* the fields are symmetric about x = 0, about y = 0 */
+    double time;
+    double dt_limit;                   /* longest step that the last rejection still allows */
+    double injected, leaked, fracture; /* volumes */
+    double front_change, front_advance;
+    double dt;
+    box footprint; /* of the wet cells */
+    int unknowns;
+} state;
+
+/* The cells that a point source feeds, and the part each takes. */
+typedef struct point_source {
+    ilsa_source_def def;
+    int count;
+    int cell[4];
+    double part[4];
+} point_source;
+
+struct ilsa_solver {
+    ilsa_mesh_def mesh; /* as it is now */
+    ilsa_material_def material;
+    ilsa_stress *stress;
+    point_source *sources;
+    ilsa_solver_def def; /* options; its pointers are NULL */
+    double step_cells, tolerance;
+    int stress_mirror_x, stress_mirror_y;
+
+    state now;
+    fields field;
+    tip_records tips;
+
+    /* work done with this handle, accepted or not; no part of the state */
+    ilsa_report total;
+    ilsa_profile profile;
+
+    /* one step at work */
+    grid g;
+    box region;   /* cells that the step may touch */
+    fields trial; /* trial.trigger and trial.leaked are unused: both change on acceptance */
+    tip_records trial_tips;
+    double *gain, *leak; /* per area in this step: S of (4.4), and the leaked part of it */
+    front_seed *seeds;
+    double *distance, *next_distance;
+    int seed_count, seed_capacity;
+    box trial_footprint;
+
+    double *sigma;
+    front *march;
+    coupled *flow;
+    elasticity *elastic;
+    anderson *mixer;
+    error_text error;
+
+    ilsa_front_point *front_points;
+    size_t front_capacity;
+    ilsa_survey_point *survey_points;
+    size_t survey_capacity;
+};
+
+/* Fields: allocation, and setting every cell to empty. */
+ilsa_status ilsai_fields_create(fields *f, const ilsa_mesh_def *mesh, int leak_off);
+void ilsai_fields_destroy(fields *f);
+void ilsai_fields_clear(fields *f, size_t count);
+void ilsai_fields_clear_box(fields *f, const ilsa_mesh_def *mesh, const box *b);
+
+/* Room for count records, those present kept. */
+ilsa_status ilsai_tip_records_reserve(tip_records *r, int count);
+/* The record of a cell, NULL if none. */
+const tip_record *ilsai_tip_records_find(const tip_records *r, int cell);
+void ilsai_tip_records_sort(tip_records *r);
+
+/* Cells and parts of every source on the mesh as it is now. */
+void ilsai_sources_place(ilsa_solver *s);
+
+/* Which mirrors the stress field has; fills s->sigma. ILSA_ERR_MISMATCH. */
+ilsa_status ilsai_solver_fill_stress(ilsa_solver *s);
+
+/* ILSA_ERR_MISMATCH and the thread's message if symmetry is asked for that the scene has not. */
+ilsa_status ilsai_symmetry_check(const ilsa_solver *s);
+
+/* The grid of the next step: folded as far as definition, sources, stress and state allow. */
+grid ilsai_solver_grid(const ilsa_solver *s);
+
+static inline int ilsai_has_leakoff(const ilsa_solver *s) {
+    return s->material.C_prime > 0;
+}
+
+/* Cells around the footprint that a step may touch: the advance and the band of distances. */
+box ilsai_solver_region(const ilsa_solver *s, const box *footprint);
+
+/* Distance beyond the front up to which levels are kept. */
+double ilsai_solver_band(const ilsa_solver *s);
+
+#endif

@@ -1,0 +1,382 @@
+#include "step.h"
+
+#include "clock.h"
+#include "rim.h"
+#include "tuning.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int is_channel(unsigned char kind) {
+    return kind >= ILSA_CELL_SURVEY;
+}
+
+/* Cell size along the normal that a survey cell sees: of the faces that lead out of the channel. */
+static double seed_size(const ilsa_solver *s, int cell) {
+    int open[GRID_FACES];
+    for (int face = 0; face < GRID_FACES; face++) {
+        int other = ilsai_grid_neighbour(&s->g, cell % s->g.nx, cell / s->g.nx, face);
+        open[face] = other < 0 || !is_channel(s->field.kind[other]);
+    }
+    int along_x = open[GRID_LEFT] || open[GRID_RIGHT], along_y = open[GRID_DOWN] || open[GRID_UP];
+    return along_x && along_y ? ilsai_grid_h(&s->g) : along_x ? s->g.dx : s->g.dy;
+}
+
+static ilsa_status reserve_seeds(ilsa_solver *s, int count) {
+    if (count <= s->seed_capacity) {
+        return ILSA_OK;
+    }
+    size_t capacity = (size_t)count + (size_t)count / 2 + 16;
+    front_seed *seeds = realloc(s->seeds, capacity * sizeof *seeds);
+    s->seeds = seeds ? seeds : s->seeds;
+    double *distance = realloc(s->distance, capacity * sizeof *distance);
+    s->distance = distance ? distance : s->distance;
+    double *next = realloc(s->next_distance, capacity * sizeof *next);
+    s->next_distance = next ? next : s->next_distance;
+    if (!seeds || !distance || !next) {
+        return ILSA_ERR_MEMORY;
+    }
+    s->seed_capacity = (int)capacity;
+    return ILSA_OK;
+}
+
+/* The survey cells as the last step left them. */
+static ilsa_status find_seeds(ilsa_solver *s) {
+    box part = ilsai_box_fold(&s->g, &s->now.footprint);
+    s->seed_count = 0;
+    for (int j = part.y0; j <= part.y1; j++) {
+        for (int i = part.x0; i <= part.x1; i++) {
+            int cell = ilsai_grid_cell(&s->g, i, j);
+            if (s->field.kind[cell] != ILSA_CELL_SURVEY) {
+                continue;
+            }
+            if (reserve_seeds(s, s->seed_count + 1) != ILSA_OK) {
+                return ILSA_ERR_MEMORY;
+            }
+            front_seed seed = {.cell = cell, .s0 = -s->field.level[cell]};
+            seed.h = seed_size(s, cell);
+            seed.V = s->field.speed[cell];
+            seed.w = s->field.width[cell];
+            s->seeds[s->seed_count++] = seed;
+        }
+    }
+    return ILSA_OK;
+}
+
+static void copy_rows(const ilsa_solver *s, const box *b, void *to, const void *from, size_t size) {
+    size_t length = (size_t)(b->x1 - b->x0 + 1) * size;
+    for (int j = b->y0; j <= b->y1; j++) {
+        size_t at = (size_t)ilsai_grid_cell(&s->g, b->x0, j) * size;
+        memcpy((char *)to + at, (const char *)from + at, length);
+    }
+}
+
+static void copy_fields(const ilsa_solver *s, const box *b, fields *to, const fields *from) {
+    copy_rows(s, b, to->width, from->width, sizeof *to->width);
+    copy_rows(s, b, to->pressure, from->pressure, sizeof *to->pressure);
+    copy_rows(s, b, to->level, from->level, sizeof *to->level);
+    copy_rows(s, b, to->speed, from->speed, sizeof *to->speed);
+    copy_rows(s, b, to->kind, from->kind, sizeof *to->kind);
+}
+
+static ilsa_status begin(ilsa_solver *s, double dt) {
+    s->g = ilsai_solver_grid(s);
+    s->region = ilsai_solver_region(s, &s->now.footprint);
+    copy_fields(s, &s->region, &s->trial, &s->field);
+    s->trial_tips.count = 0;
+    if (find_seeds(s) != ILSA_OK || ilsai_anderson_begin(s->mixer, s->seed_count) != ILSA_OK) {
+        return ILSA_ERR_MEMORY;
+    }
+    return ilsai_rim_begin(s, dt);
+}
+
+/* Distances within what the step allows: never back, no further than a step may go. */
+static double bounded(const front_seed *seed, double distance) {
+    double limit = seed->s0 + ILSAI_ADVANCE_MAX * seed->h;
+    distance = distance > seed->s0 ? distance : seed->s0;
+    return distance < limit ? distance : limit;
+}
+
+/* The front moves on as it did in the last step. */
+static void predict(ilsa_solver *s, double dt) {
+    for (int k = 0; k < s->seed_count; k++) {
+        front_seed *seed = &s->seeds[k];
+        s->distance[k] = bounded(seed, seed->s0 + seed->V * dt);
+    }
+}
+
+static void place_front(ilsa_solver *s, double dt) {
+    for (int k = 0; k < s->seed_count; k++) {
+        front_seed *seed = &s->seeds[k];
+        seed->s = s->distance[k];
+        seed->V = (seed->s - seed->s0) / dt;
+        seed->w = s->trial.width[seed->cell];
+    }
+}
+
+/* Survey, tip and channel cells for the front where it is now. */
+static ilsa_status march(ilsa_solver *s, double dt) {
+    place_front(s, dt);
+    ilsa_status status = ilsai_front_march(s->march, &s->g, &s->region, s->field.kind, s->seeds,
+                                           s->seed_count, ilsai_solver_band(s), s->trial.level);
+    return status == ILSA_OK ? ilsai_rim_set(s, dt) : status;
+}
+
+static coupled_problem pose(ilsa_solver *s, double dt, double change) {
+    coupled_problem problem = {.g = &s->g,
+                               .e = s->elastic,
+                               .footprint = s->trial_footprint,
+                               .kind = s->trial.kind,
+                               .sigma = s->sigma,
+                               .width_old = s->field.width,
+                               .gain = s->gain,
+                               .width = s->trial.width,
+                               .pressure = s->trial.pressure,
+                               .dt = dt,
+                               .mu_prime = s->material.mu_prime,
+                               .linear = s->def.linear,
+                               .max_newton = ILSAI_NEWTON_MAX};
+    double aim = 0.3 * change > s->tolerance ? 0.3 * change : s->tolerance;
+    problem.tolerance = ILSAI_WIDTH_TOLERANCE * (aim < 0.1 ? aim : 0.1);
+    return problem;
+}
+
+/* Where the widths want the front (4.9); returns the largest difference to where it is, in cells.
+ */
+static double survey(ilsa_solver *s, double dt) {
+    double largest = 0;
+    for (int k = 0; k < s->seed_count; k++) {
+        const front_seed *seed = &s->seeds[k];
+        tip_front at = ilsai_tip_distance(&s->material, s->trial.width[seed->cell], seed->s0, dt);
+        s->next_distance[k] = bounded(seed, at.s);
+        double change = fabs(s->next_distance[k] - s->distance[k]) / seed->h;
+        largest = change > largest || isnan(change) ? change : largest;
+    }
+    return largest;
+}
+
+static void mix(ilsa_solver *s) {
+    ilsai_anderson_next(s->mixer, s->next_distance, s->distance);
+    for (int k = 0; k < s->seed_count; k++) {
+        s->distance[k] = bounded(&s->seeds[k], s->distance[k]);
+    }
+}
+
+/* Passes of the front loop until front and widths agree. */
+static ilsa_status iterate(ilsa_solver *s, double dt, coupled_counts *counts, ilsa_report *report,
+                           double *last_change) {
+    double change = 1;
+    for (int pass = 0; pass < ILSAI_FRONT_PASSES_MAX; pass++) {
+        double start = ilsai_clock();
+        report->front_iterations++;
+        ilsa_status status = march(s, dt);
+        s->profile.front += ilsai_clock() - start;
+        if (status != ILSA_OK) {
+            return status;
+        }
+        coupled_problem problem = pose(s, dt, change);
+        status = ilsai_coupled_solve(s->flow, &problem, counts);
+        if (status != ILSA_OK) {
+            return status;
+        }
+        start = ilsai_clock();
+        change = survey(s, dt);
+        s->profile.front += ilsai_clock() - start;
+        if (isnan(change)) {
+            return ILSA_STEP_REJECTED;
+        }
+        if (change <= s->tolerance) {
+            *last_change = change;
+            return ILSA_OK;
+        }
+        mix(s);
+    }
+    return ILSA_STEP_REJECTED;
+}
+
+/* Advance of the front in cells; a front at its bound has been held back by it. */
+static double advance(const ilsa_solver *s) {
+    double largest = 0;
+    for (int k = 0; k < s->seed_count; k++) {
+        double cells = (s->seeds[k].s - s->seeds[k].s0) / s->seeds[k].h;
+        largest = cells > largest ? cells : largest;
+    }
+    return largest;
+}
+
+typedef struct volumes {
+    double channel, tip, leaked;
+} volumes;
+
+static volumes sum_volumes(const ilsa_solver *s) {
+    volumes v = {0, 0, 0};
+    box part = ilsai_box_fold(&s->g, &s->trial_footprint);
+    int image[4];
+    for (int j = part.y0; j <= part.y1; j++) {
+        for (int i = part.x0; i <= part.x1; i++) {
+            int cell = ilsai_grid_cell(&s->g, i, j);
+            double area = ilsai_grid_images(&s->g, i, j, image) * s->g.dx * s->g.dy;
+            if (s->trial.kind[cell] != ILSA_CELL_EMPTY) {
+                double volume = s->trial.width[cell] * area;
+                *(s->trial.kind[cell] == ILSA_CELL_TIP ? &v.tip : &v.channel) += volume;
+                v.leaked += s->leak[cell] * area;
+            }
+        }
+    }
+    return v;
+}
+
+static double injected_in(const ilsa_solver *s, double dt) {
+    double rate = 0;
+    for (int k = 0; k < s->def.source_count; k++) {
+        rate += s->sources[k].def.rate;
+    }
+    return rate * dt;
+}
+
+/*
+ * The volume that the iteration's tolerance has left unaccounted for goes into the channel widths
+ * in proportion, so that injected = fracture + leaked holds to rounding at every step.
+ */
+static ilsa_status balance_volume(ilsa_solver *s, double dt) {
+    volumes v = sum_volumes(s);
+    double injected = s->now.injected + injected_in(s, dt), leaked = s->now.leaked + v.leaked;
+    double factor = (injected - leaked - v.tip) / v.channel;
+    if (!(fabs(factor - 1) < ILSAI_BALANCE_MAX)) {
+        return ILSA_STEP_REJECTED;
+    }
+    box part = ilsai_box_fold(&s->g, &s->trial_footprint);
+    for (int j = part.y0; j <= part.y1; j++) {
+        for (int i = part.x0; i <= part.x1; i++) {
+            int cell = ilsai_grid_cell(&s->g, i, j);
+            s->trial.width[cell] *= is_channel(s->trial.kind[cell]) ? factor : 1;
+        }
+    }
+    s->now.injected = injected;
+    s->now.leaked = leaked;
+    s->now.fracture = v.tip + v.channel * factor;
+    return ILSA_OK;
+}
+
+void ilsai_step_classify(const grid *g, const box *part, unsigned char *kind) {
+    for (int j = part->y0; j <= part->y1; j++) {
+        for (int i = part->x0; i <= part->x1; i++) {
+            int cell = ilsai_grid_cell(g, i, j), rim = 0;
+            if (!is_channel(kind[cell])) {
+                continue;
+            }
+            for (int face = 0; face < GRID_FACES; face++) {
+                int other = ilsai_grid_neighbour(g, i, j, face);
+                rim |= other < 0 || !is_channel(kind[other]);
+            }
+            kind[cell] = rim ? ILSA_CELL_SURVEY : ILSA_CELL_CHANNEL;
+        }
+    }
+}
+
+/* Trigger times of the cells whose centres the front has passed in the step. */
+static void set_triggers(ilsa_solver *s, double dt) {
+    int count;
+    const front_cell *cells = ilsai_front_cells(s->march, &count);
+    for (int k = 0; k < count; k++) {
+        double *trigger = &s->field.trigger[cells[k].cell];
+        if (cells[k].T <= 0 && !isfinite(*trigger)) {
+            double since = cells[k].V > 0 ? -cells[k].T / cells[k].V : 0;
+            *trigger = s->now.time + (since < dt ? dt - since : 0);
+        }
+    }
+}
+
+static void add_leaked(ilsa_solver *s) {
+    box part = ilsai_box_fold(&s->g, &s->trial_footprint);
+    for (int j = part.y0; j <= part.y1; j++) {
+        for (int i = part.x0; i <= part.x1; i++) {
+            int cell = ilsai_grid_cell(&s->g, i, j);
+            s->field.leaked[cell] += s->leak[cell];
+        }
+    }
+}
+
+/* Keeps the paths of the cells that are still tip cells. */
+static void keep_tips(ilsa_solver *s) {
+    tip_records old = s->tips;
+    int kept = 0;
+    for (int k = 0; k < s->trial_tips.count; k++) {
+        if (s->trial.kind[s->trial_tips.at[k].cell] == ILSA_CELL_TIP) {
+            s->trial_tips.at[kept++] = s->trial_tips.at[k];
+        }
+    }
+    s->trial_tips.count = kept;
+    ilsai_tip_records_sort(&s->trial_tips);
+    s->tips = s->trial_tips;
+    s->trial_tips = old;
+}
+
+/* Writes the images of the representative cells of the region. */
+static void unfold(ilsa_solver *s) {
+    for (int j = s->region.y0; j <= s->region.y1; j++) {
+        for (int i = s->region.x0; i <= s->region.x1; i++) {
+            int cell = ilsai_grid_cell(&s->g, i, j), from = ilsai_grid_fold(&s->g, i, j);
+            if (cell == from) {
+                continue;
+            }
+            s->trial.width[cell] = s->trial.width[from];
+            s->trial.pressure[cell] = s->trial.pressure[from];
+            s->trial.level[cell] = s->trial.level[from];
+            s->trial.speed[cell] = s->trial.speed[from];
+            s->trial.kind[cell] = s->trial.kind[from];
+            if (ilsai_has_leakoff(s)) {
+                s->field.trigger[cell] = s->field.trigger[from];
+                s->field.leaked[cell] = s->field.leaked[from];
+            }
+        }
+    }
+}
+
+static void accept(ilsa_solver *s, double dt, double change) {
+    box part = ilsai_box_fold(&s->g, &s->region);
+    for (int k = 0; k < s->seed_count; k++) {
+        s->trial.speed[s->seeds[k].cell] = s->seeds[k].V;
+    }
+    ilsai_step_classify(&s->g, &part, s->trial.kind);
+    if (ilsai_has_leakoff(s)) {
+        set_triggers(s, dt);
+        add_leaked(s);
+        keep_tips(s);
+    }
+    unfold(s);
+    copy_fields(s, &s->region, &s->field, &s->trial);
+    s->now.footprint = s->trial_footprint;
+    s->now.mirror_x = s->now.mirror_x && s->g.mirror_x;
+    s->now.mirror_y = s->now.mirror_y && s->g.mirror_y;
+    s->now.unknowns = ilsai_coupled_unknowns(s->flow);
+    s->now.front_advance = advance(s);
+    s->now.front_change = change;
+    s->now.dt = dt;
+    s->now.time += dt;
+}
+
+ilsa_status ilsai_step(ilsa_solver *s, double dt, ilsa_report *report) {
+    coupled_counts counts = {0};
+    double change = 0;
+    ilsa_status status = begin(s, dt);
+    if (status == ILSA_OK) {
+        predict(s, dt);
+        status = iterate(s, dt, &counts, report, &change);
+    }
+    if (status == ILSA_OK && advance(s) >= ILSAI_ADVANCE_MAX) {
+        status = ILSA_STEP_TOO_LARGE;
+    }
+    if (status == ILSA_OK) {
+        status = balance_volume(s, dt);
+    }
+    if (status == ILSA_OK) {
+        accept(s, dt, change);
+    }
+    report->newton_iterations += counts.newton;
+    report->krylov_iterations += counts.krylov;
+    report->elasticity_products += counts.products;
+    s->profile.product += counts.seconds_product;
+    s->profile.preconditioner += counts.seconds_preconditioner;
+    return status;
+}

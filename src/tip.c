@@ -1,0 +1,470 @@
+#include "tip.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stddef.h>
+
+/*
+ * Everything rests on F(K, B) = integral of u^3 / (u + B) over [K, 1]: three times F is the bracket
+ * of (3.11), without the terms that cancel in it. What is computed is
+ *     G(K, B) = (1 + B) F(K, B) = integral of u^3 / (omega + theta u) over [K, 1],
+ *     theta = 1 / (1 + B), omega = B / (1 + B),
+ * between 0 and 1/3 for every B of the double range. (3.13) is Delta = G(K, b0 C), and (3.14) is
+ * g_delta = theta G(K, b C) / C1(Delta). kappa = 1 - K is carried as its own number, because K has
+ * lost it near the toughness vertex.
+ */
+
+#define PI        3.141592653589793
+#define BETA_M    3.1473451902649446 /* (3.3) */
+#define BETA_MT   2.5335594408265696
+#define BETA_M3   31.176914536239791  /* beta_m^3 */
+#define B0_PER_C  0.99117998230567239 /* 3 beta_mt^4 / (4 beta_m^3) of (3.6) */
+#define MOMENT_P0 0.377               /* after (3.18) */
+#define MOMENT_P1 0.260
+
+/* A Newton step in ln x below this leaves an error of its square. */
+#define STEP_SMALL 1e-7
+
+/* Where a root is looked for. */
+#define X_LEAST 1e-280
+#define X_MOST  1e280
+
+/* G(K, B) and what its derivatives are made of. */
+typedef struct tip_bracket {
+    double G, theta, omega;
+    double by_kappa; /* dG / d ln kappa = (1 + B) dF / d ln kappa */
+    double by_B;     /* (1 + B) dF / d ln B, <= 0 */
+} tip_bracket;
+
+/* g_delta and the derivatives of its logarithm. */
+typedef struct tip_g {
+    double g;
+    double by_kappa; /* d ln g / d ln kappa at constant C */
+    double by_C;     /* d ln g / d ln C at constant K */
+} tip_g;
+
+/* C1(delta) of (3.9) with the derivative of its logarithm. */
+typedef struct tip_factor {
+    double value, dlog;
+} tip_factor;
+
+/* The value of an increasing function of ln x, its slope, and its derivative by ln w. */
+typedef struct tip_residual {
+    double value, slope, by_w;
+} tip_residual;
+
+typedef tip_residual (*tip_equation)(const void *problem, double x);
+
+/*
+ * Sum of the Gauss-Legendre rule for G, two nodes m +- h x a term: one division for both, and
+ * all numbers positive. node2 = x^2.
+ */
+static inline double gauss_sum(int pairs, const double *node2, const double *weight, double kappa,
+                               double theta, double omega) {
+    const double h = 0.5 * kappa, m = 1.0 - h, m2 = m * m, h2 = h * h;
+    const double middle = omega + theta * m, middle2 = middle * middle, theta2 = theta * theta;
+    double term[8];
+    for (int j = 0; j < pairs; j++) {
+        const double q = h2 * node2[j];
+        term[j] = weight[j] * (theta * (m2 - q) * (m2 + q) + omega * m * (m2 + 3.0 * q)) /
+                  (middle2 - theta2 * q);
+    }
+    double sum = 0.0;
+    for (int j = 0; j < pairs; j++)
+        sum += term[j];
+    return kappa * sum;
+}
+
+static double gauss_8(double kappa, double theta, double omega) {
+    static const double node2[4] = {0.033648268067506853, 0.27618431387246444, 0.63467747623463664,
+                                    0.92215660849205873};
+    static const double weight[4] = {0.36268378337836198, 0.31370664587788729, 0.22238103445337447,
+                                     0.10122853629037626};
+    return gauss_sum(4, node2, weight, kappa, theta, omega);
+}
+
+static double gauss_16(double kappa, double theta, double omega) {
+    static const double node2[8] = {
+        0.0090273770256471514, 0.079300559811486653, 0.20977936861551007, 0.38177105339711555,
+        0.57063582016217218,   0.74931737854740332,  0.89222197421379785, 0.97891421016235110};
+    static const double weight[8] = {
+        0.18945061045506850, 0.18260341504492359,  0.16915651939500254,  0.14959598881657673,
+        0.12462897125553387, 0.095158511682492785, 0.062253523938647893, 0.027152459411754095};
+    return gauss_sum(8, node2, weight, kappa, theta, omega);
+}
+
+/* (3.11) as printed: exact enough where B is small, and needed where the pole is near u = K. */
+static double bracket_printed(double K, double kappa, double B) {
+    const double logarithm = B > 0.0 ? B * B * B * log1p(kappa / (K + B)) : 0.0;
+    const double cubic = kappa * (1.0 + K + K * K) / 3.0;
+    return (1.0 + B) * (cubic - 0.5 * B * kappa * (1.0 + K) + B * B * kappa - logarithm);
+}
+
+static tip_bracket bracket(double K, double kappa, double B) {
+    tip_bracket f = {.theta = 1.0 / (1.0 + B), .by_kappa = 0.0, .by_B = 0.0};
+    f.omega = B * f.theta;
+    if (K + B >= 2.0 * kappa)
+        f.G = gauss_8(kappa, f.theta, f.omega);
+    else if (B < 0.3 && K < 0.2)
+        f.G = bracket_printed(K, kappa, B);
+    else
+        f.G = gauss_16(kappa, f.theta, f.omega);
+    const double pole = f.theta * K + f.omega;
+    if (pole > 0.0) {
+        /* Euler's relation for F, homogeneous of degree 3 in B and both ends of the integral. */
+        const double K2 = K * K;
+        const double ends = f.theta * K * (1.0 + K + K2) + f.omega * (1.0 + K) * (1.0 + K2);
+        f.by_kappa = kappa * K2 * K / pole;
+        f.by_B = 3.0 * f.G - kappa * ends / pole;
+    }
+    return f;
+}
+
+/*
+ * C1 = 4 pi (1 + d) / (1 + 2 d) T(d^2) with T(y) = tan(pi d) (1 - 4 d^2) / (pi d (1 - d^2)), free
+ * of singularities for d < 3/2; T is its interpolating polynomial on 0 <= d <= 1/2 (error 4e-17).
+ */
+static tip_factor factor_C1(double d) {
+    static const double c[11] = {1.0,
+                                 0.2898681336964368,
+                                 0.11827440344686072,
+                                 0.05125534635745701,
+                                 0.022590987654849883,
+                                 0.01001146147298533,
+                                 0.004446133360434121,
+                                 0.0019670205351392306,
+                                 0.0009140707208492647,
+                                 0.0002871593567395032,
+                                 0.0003281727954294107};
+    const double y = d * d;
+    double T = c[10], dT = 0.0;
+    for (int k = 9; k >= 0; k--) {
+        dT = dT * y + T;
+        T = T * y + c[k];
+    }
+    return (tip_factor){4.0 * PI * (1.0 + d) / (1.0 + 2.0 * d) * T,
+                        1.0 / (1.0 + d) - 2.0 / (1.0 + 2.0 * d) + 2.0 * d * dT / T};
+}
+
+/* (3.14) with the whole derivative, that of Delta included. C2(delta) of (3.9) is C1(1.5 delta). */
+static tip_g g_delta(double K, double kappa, double C) {
+    const tip_bracket zeroth = bracket(K, kappa, B0_PER_C * C);
+    const double delta = zeroth.G; /* (3.13) */
+    const tip_factor C1 = factor_C1(delta), C2 = factor_C1(1.5 * delta);
+    const tip_bracket f = bracket(K, kappa, C * C2.value / C1.value);
+    const double by_b = f.by_B / f.G;
+    const double by_delta = by_b * (1.5 * C2.dlog - C1.dlog) - C1.dlog;
+    return (tip_g){f.theta * f.G / C1.value, f.by_kappa / f.G + by_delta * zeroth.by_kappa,
+                   by_b + by_delta * (zeroth.omega * zeroth.G + zeroth.by_B)};
+}
+
+/* (3.17) with s = g0 (beta_m^3 + beta_mt^4 C) = (3 + 4 b0 C) F. */
+static double delta_p(double K, double C, double p) {
+    if (K >= 1.0)
+        return 0.0;
+    const tip_bracket f = bracket(K, 1.0 - K, B0_PER_C * C);
+    return (1.0 - p + p * (4.0 - f.theta) * f.G) * f.G;
+}
+
+/*
+ * Root of an increasing function of ln x between X_LEAST and X_MOST, or the end that is nearer to
+ * it: Newton, kept inside the interval that it has found.
+ */
+static double solve(tip_equation equation, const void *problem, double x, tip_residual *last) {
+    double low = X_LEAST, high = X_MOST;
+    while (low < high * (1.0 - STEP_SMALL)) {
+        *last = equation(problem, x);
+        const double step = -last->value / last->slope;
+        if (fabs(step) < STEP_SMALL)
+            return x + x * step;
+        if (last->value > 0.0)
+            high = x;
+        else
+            low = x;
+        x *= exp(step);
+        if (!(x > low && x < high))
+            x = sqrt(low) * sqrt(high);
+    }
+    return x;
+}
+
+/*
+ * (3.15) for the width at s: w_k the toughness width, C_hat = a / w, s_hat = m3 / w^3.
+ * The unknown is e = w - w_k > 0.
+ */
+typedef struct width_problem {
+    double w_k, a, m3;
+} width_problem;
+
+static tip_residual width_residual(const void *problem, double e) {
+    const width_problem *p = problem;
+    const double w = p->w_k + e, K = p->w_k / w, kappa = e / w;
+    const tip_g f = g_delta(K, kappa, p->a / w);
+    return (tip_residual){.value = log(f.g * (w * w * w) / p->m3),
+                          .slope = f.by_kappa * K + kappa * (3.0 - f.by_C)};
+}
+
+/* e of the zeroth order (3.6) with F taken as (1 - K^4) / (4 (u + B)), 3/4 <= u <= 1. */
+static double width_start(const width_problem *p) {
+    const double w_k2 = p->w_k * p->w_k, w_m3 = BETA_M3 * p->m3;
+    const double w_mt4 = 4.0 / 3.0 * B0_PER_C * w_m3 * p->a;
+    const double first = sqrt(sqrt(w_k2 * w_k2 + w_mt4 + w_m3 * cbrt(w_m3)));
+    const double K = p->w_k / first;
+    const double rise = (1.0 + K) * (1.0 + K * K) / (1.0 + K + K * K) * w_m3 * first + w_mt4;
+    const double w2 = sqrt(w_k2 * w_k2 + rise);
+    return rise / ((sqrt(w2) + p->w_k) * (w2 + w_k2));
+}
+
+static double width_solve(const width_problem *p) {
+    tip_residual last;
+    return p->w_k + solve(width_residual, p, width_start(p), &last);
+}
+
+/* Within this range no product below overflows, and none that matters vanishes. */
+static inline bool is_plain(double x) {
+    return x >= 1e-30 && x <= 1e30;
+}
+
+static inline bool is_plain_law(const tip_law *law) {
+    return is_plain(law->E_prime) && is_plain(law->mu_prime) &&
+           (is_plain(law->K_prime) || law->K_prime == 0.0) &&
+           (is_plain(law->C_prime) || law->C_prime == 0.0);
+}
+
+static double log_or_minus_infinity(double x) {
+    return x > 0.0 ? log(x) : -HUGE_VAL;
+}
+
+/* Where C_hat is beyond e^230 only its product with s_hat matters. */
+#define LOG_C_MOST 230.0
+
+/* The width for any arguments: logarithms, then units of the largest vertex width (3.3). */
+static double width_by_logarithms(const tip_law *law, double V, double s) {
+    const double log_s = log(s), log_E = log(law->E_prime);
+    const double w_k = log_or_minus_infinity(law->K_prime) + 0.5 * log_s - log_E;
+    if (V <= 0.0)
+        return exp(w_k);
+    double a = log(2.0) + log_or_minus_infinity(law->C_prime) + 0.5 * (log_s - log(V));
+    double m3 = log(law->mu_prime) + log(V) + 2.0 * log_s - log_E;
+    const double unit = fmax(w_k, fmax(m3 / 3.0, 0.25 * (m3 + a)));
+    const double excess = fmax(a - unit - LOG_C_MOST, 0.0);
+    a -= unit + excess;
+    m3 -= 3.0 * unit - excess;
+    if (m3 < -600.0)
+        return exp(w_k);
+    return exp(unit + log(width_solve(&(width_problem){exp(w_k - unit), exp(a), exp(m3)})));
+}
+
+double ilsai_tip_width(const tip_law *law, double V, double s) {
+    if (!is_plain_law(law) || !is_plain(s) || !(is_plain(V) || V == 0.0))
+        return width_by_logarithms(law, V, s);
+    const double root = sqrt(s), w_k = law->K_prime / law->E_prime * root;
+    if (V == 0.0)
+        return w_k;
+    return width_solve(&(width_problem){w_k, 2.0 * law->C_prime * root / sqrt(V),
+                                        law->mu_prime / law->E_prime * V * s * s});
+}
+
+void ilsai_tip_moments(const tip_law *law, double V, double s, double w, double *M0, double *M1) {
+    double p0 = 0.0, p1 = 0.0;
+    if (V > 0.0) {
+        const double root = sqrt(s);
+        const double K = law->K_prime / law->E_prime * root / w;
+        const double C = 2.0 * law->C_prime * root / (sqrt(V) * w);
+        p0 = delta_p(K, C, MOMENT_P0);
+        p1 = delta_p(K, C, MOMENT_P1);
+    }
+    *M0 = 2.0 * w * s / (3.0 + p0);
+    *M1 = 2.0 * w * s * s / (5.0 + p1);
+}
+
+/*
+ * (4.9) in units of s0: K0 and C0 are K_hat at s0 and C_hat for V = s0 / dt, m0 likewise s_hat.
+ * With xi = v / s0 the unknown is x, 1 / x = 1 / xi - 1 / xi_most, which runs from 0 to infinity
+ * between arrest and the distance where K_hat = 1.
+ */
+typedef struct distance_problem {
+    double K0, C0, log_m0;
+    double gap;     /* 1 - K0^2 */
+    double xi_rate; /* 1 / xi_most = K0^2 / (1 - K0^2) */
+} distance_problem;
+
+static tip_residual distance_residual(const void *problem, double x) {
+    const distance_problem *p = problem;
+    const double xi = 1.0 / (1.0 / x + p->xi_rate), f = xi / x, S = 1.0 + xi, root = sqrt(S);
+    const double K = p->K0 * root, kappa = p->gap * f / (1.0 + K);
+    const tip_g h = g_delta(K, kappa, p->C0 * root / sqrt(xi));
+    const double by_K = h.by_kappa * K / kappa;
+    const double log_s = S < 1e90 ? log(xi * (S * S) / h.g) : log(xi / h.g) + 2.0 * log(S);
+    return (tip_residual){.value = p->log_m0 + log_s,
+                          .slope = f * (1.0 + (0.5 * h.by_C + xi * (0.5 * by_K + 2.0)) / S),
+                          .by_w = h.by_C - by_K - 3.0};
+}
+
+/* The sum of the inverses of the vertex solutions of (4.9), each of its two limits in xi. */
+static double distance_start(const distance_problem *p) {
+    const double m = fmin(p->log_m0 + log(BETA_M3), 600.0);
+    double inverse = exp(m) + exp(m / 3.0);
+    if (p->C0 > 0.0) {
+        const double mt = fmin(2.0 * (m + log(4.0 / 3.0 * B0_PER_C * p->C0)), 600.0);
+        inverse += exp(mt) + exp(mt / 6.0);
+    }
+    return 1.0 / inverse;
+}
+
+/* K0, C0 and m0 for any arguments; false where K0 >= 1. */
+static bool distance_by_logarithms(distance_problem *p, const tip_law *law, double w, double s0,
+                                   double dt) {
+    const double log_w = log(w), log_s0 = log(s0), log_dt = log(dt), log_E = log(law->E_prime);
+    const double K0 = log_or_minus_infinity(law->K_prime) + 0.5 * log_s0 - log_E - log_w;
+    const double C0 = log(2.0) + log_or_minus_infinity(law->C_prime) + 0.5 * log_dt - log_w;
+    const double excess = fmax(C0 - LOG_C_MOST, 0.0);
+    p->K0 = exp(fmin(K0, 0.0));
+    p->C0 = exp(C0 - excess);
+    p->log_m0 = log(law->mu_prime) - log_E + 3.0 * (log_s0 - log_w) - log_dt + excess;
+    return p->K0 < 1.0;
+}
+
+static bool distance_plain(distance_problem *p, const tip_law *law, double w, double s0,
+                           double dt) {
+    const double r = s0 / w;
+    p->K0 = law->K_prime / law->E_prime * sqrt(s0) / w;
+    p->C0 = 2.0 * law->C_prime * sqrt(dt) / w;
+    p->log_m0 = log(law->mu_prime / law->E_prime * (r * r * r) / dt);
+    return p->K0 < 1.0;
+}
+
+tip_front ilsai_tip_distance(const tip_law *law, double w, double s0, double dt) {
+    distance_problem p;
+    const bool plain = is_plain_law(law) && is_plain(w) && is_plain(s0) && is_plain(dt);
+    if (!(plain ? distance_plain(&p, law, w, s0, dt) : distance_by_logarithms(&p, law, w, s0, dt)))
+        return (tip_front){s0, 0.0, 0.0};
+    p.gap = (1.0 - p.K0) * (1.0 + p.K0);
+    p.xi_rate = p.K0 * p.K0 / p.gap;
+    tip_residual last;
+    const double x = solve(distance_residual, &p, distance_start(&p), &last);
+    const double xi = 1.0 / (1.0 / x + p.xi_rate), v = s0 * xi;
+    return (tip_front){s0 + v, v / dt, -last.by_w / last.slope * (xi / x) * v / w};
+}
+
+static bool is_positive(double x) {
+    return x > 0.0 && x <= DBL_MAX;
+}
+
+static bool is_not_negative(double x) {
+    return x >= 0.0 && x <= DBL_MAX;
+}
+
+static bool is_law(const tip_law *law) {
+    return is_positive(law->E_prime) && is_positive(law->mu_prime) &&
+           is_not_negative(law->K_prime) && is_not_negative(law->C_prime);
+}
+
+/* A width that ilsa_tip_width can give: zero is one without toughness and at rest. */
+static bool is_width(const tip_law *law, double V, double w) {
+    return is_positive(w) || (w == 0.0 && V == 0.0 && law->K_prime == 0.0);
+}
+
+double ilsa_tip_g_delta(double K_hat, double C_hat) {
+    if (!is_not_negative(K_hat) || !is_not_negative(C_hat))
+        return NAN;
+    return K_hat < 1.0 ? g_delta(K_hat, 1.0 - K_hat, C_hat).g : 0.0;
+}
+
+double ilsa_tip_delta_p(double K_hat, double C_hat, double p) {
+    if (!is_not_negative(K_hat) || !is_not_negative(C_hat) || !(p >= 0.0 && p <= 1.0))
+        return NAN;
+    return delta_p(K_hat, C_hat, p);
+}
+
+ilsa_status ilsa_tip_width(const ilsa_material_def *scaled, double V, double s, double *w) {
+    if (!scaled || !w)
+        return ILSA_ERR_NULL;
+    if (!is_law(scaled) || !is_not_negative(V) || !is_positive(s))
+        return ILSA_ERR_VALUE;
+    const double width = ilsai_tip_width(scaled, V, s);
+    if (!is_not_negative(width)) /* beyond the double range */
+        return ILSA_ERR_VALUE;
+    *w = width;
+    return ILSA_OK;
+}
+
+ilsa_status ilsa_tip_moments(const ilsa_material_def *scaled, double V, double s, double w,
+                             double *M0, double *M1) {
+    if (!scaled || !M0 || !M1)
+        return ILSA_ERR_NULL;
+    if (!is_law(scaled) || !is_not_negative(V) || !is_positive(s) || !is_width(scaled, V, w))
+        return ILSA_ERR_VALUE;
+    double zeroth, first;
+    ilsai_tip_moments(scaled, V, s, w, &zeroth, &first);
+    if (!is_not_negative(zeroth) || !is_not_negative(first))
+        return ILSA_ERR_VALUE;
+    *M0 = zeroth;
+    *M1 = first;
+    return ILSA_OK;
+}
+
+ilsa_status ilsa_tip_distance(const ilsa_material_def *scaled, double w, double s0, double dt,
+                              double *s, double *V) {
+    if (!scaled || !s || !V)
+        return ILSA_ERR_NULL;
+    if (!is_law(scaled) || !is_positive(w) || !is_positive(s0) || !is_positive(dt))
+        return ILSA_ERR_VALUE;
+    const tip_front front = ilsai_tip_distance(scaled, w, s0, dt);
+    if (!is_positive(front.s) || !is_not_negative(front.V))
+        return ILSA_ERR_VALUE;
+    *s = front.s;
+    *V = front.V;
+    return ILSA_OK;
+}
+
+/* The vertex widths (3.3) over w, at most 1: the closed form may be 0.14 % below a vertex. */
+static void vertex_ratios(const tip_law *law, double V, double s, double w, double ratio[3]) {
+    const double log_w = log(w), log_s = log(s), log_E = log(law->E_prime);
+    const double log_V = log(V), log_mu = log(law->mu_prime);
+    const double log_C = log(2.0) + log_or_minus_infinity(law->C_prime);
+    const double k = log_or_minus_infinity(law->K_prime) - log_E + 0.5 * log_s;
+    const double mt = log(BETA_MT) + 0.25 * (log_mu + 0.5 * log_V + log_C - log_E) + 0.625 * log_s;
+    const double m = log(BETA_M) + (log_mu + log_V - log_E) / 3.0 + 2.0 / 3.0 * log_s;
+    ratio[0] = exp(fmin(k - log_w, 0.0));
+    ratio[1] = exp(fmin(mt - log_w, 0.0));
+    ratio[2] = exp(fmin(m - log_w, 0.0));
+}
+
+/*
+ * (3.19) times the product of the three differences, which removes its singularities at the
+ * vertices. Where two differences vanish (a width below the closed form) toughness comes first,
+ * then leak-off.
+ */
+static void shape_functions(const double ratio[3], double N[3]) {
+    double sum = 0.0;
+    for (int i = 0; i < 3; i++) {
+        N[i] = ratio[i] * (1.0 - ratio[(i + 1) % 3]) * (1.0 - ratio[(i + 2) % 3]);
+        sum += N[i];
+    }
+    for (int i = 0; i < 3; i++)
+        N[i] = sum > 0.0 ? N[i] / sum : 0.0;
+    for (int i = 0; i < 3 && !(sum > 0.0); i++) {
+        if (ratio[i] >= 1.0)
+            sum = N[i] = 1.0;
+    }
+}
+
+ilsa_status ilsa_tip_triangle(const ilsa_material_def *scaled, double V, double s, double w,
+                              ilsa_tip_regime *regime) {
+    if (!scaled || !regime)
+        return ILSA_ERR_NULL;
+    if (!is_law(scaled) || !is_not_negative(V) || !is_positive(s) || !is_width(scaled, V, w))
+        return ILSA_ERR_VALUE;
+    double ratio[3] = {1.0, 0.0, 0.0}, N[3];
+    if (V > 0.0)
+        vertex_ratios(scaled, V, s, w, ratio);
+    shape_functions(ratio, N);
+    *regime = (ilsa_tip_regime){.N_k = N[0],
+                                .N_mt = N[1],
+                                .N_m = N[2],
+                                .x = N[0] + 0.5 * N[1],
+                                .y = 0.5 * sqrt(3.0) * N[1]};
+    return ILSA_OK;
+}

@@ -1,0 +1,171 @@
+#include "tipcell.h"
+
+#include <math.h>
+#include <stddef.h>
+
+/*
+ * The chord of the cell at distance s from the interior corner is a trapezoid: it rises from 0 at
+ * s = 0 to its full length at h, stays until H and falls to 0 at H + h, h and H the smaller and the
+ * larger of dy sin(alpha) and dx cos(alpha). Volume and leak-off are integrals over s of a positive
+ * quantity times this chord; no term is subtracted, and alpha = 0 and pi/2 are not special.
+ */
+typedef struct tipcell_chord {
+    double h, H, length;
+} tipcell_chord;
+
+static tipcell_chord chord_of(const tipcell_front *front) {
+    const double a = front->dy * front->sin_a, b = front->dx * front->cos_a;
+    const double H = fmax(a, b);
+    return (tipcell_chord){fmin(a, b), H, front->dx * front->dy / H};
+}
+
+/* Length of the chord at s; the corners belong to both of their sides. */
+static double chord_at(const tipcell_chord *chord, double s) {
+    const double edge = fmin(s, chord->H + chord->h - s);
+    return edge < chord->h ? chord->length * fmax(edge, 0.0) / chord->h : chord->length;
+}
+
+double ilsai_tipcell_area(const tipcell_front *front) {
+    const tipcell_chord c = chord_of(front);
+    const double ell = front->ell, rest = c.H + c.h - ell;
+    if (ell <= 0.0)
+        return 0.0;
+    if (rest <= 0.0)
+        return c.H * c.length;
+    if (ell < c.h)
+        return 0.5 * c.length * ell * (ell / c.h);
+    if (ell < c.H)
+        return c.length * (ell - 0.5 * c.h);
+    return c.length * (c.H - 0.5 * rest * (rest / c.h));
+}
+
+/*
+ * Mean of M0(xi) over the strip [far - h, far], M0(xi < 0) = 0. In r = xi^(1/2) the width is smooth
+ * up to the front when toughness governs it and M0 varies at least as r^3 otherwise.
+ */
+#define STRIP_NODES 8
+
+static double mean_M0(const tip_law *law, double V, double K_I, double h, double far) {
+    static const double node[STRIP_NODES] = {
+        0.019855071751231884, 0.10166676129318664, 0.2372337950418355, 0.4082826787521751,
+        0.5917173212478249,   0.7627662049581645,  0.8983332387068134, 0.9801449282487681};
+    static const double weight[STRIP_NODES] = {
+        0.05061426814518813, 0.11119051722668724, 0.15685332293894363, 0.18134189168918100,
+        0.18134189168918100, 0.15685332293894363, 0.11119051722668724, 0.05061426814518813};
+    const double width = fmin(h, far), r0 = sqrt(far - width), r1 = sqrt(far);
+    const double dr = width / (r0 + r1);
+    double sum = 0.0;
+    for (int k = 0; k < STRIP_NODES; k++) {
+        const double r = r0 + dr * node[k], xi = r * r;
+        double M0, M1, w = V > 0.0 ? ilsai_tip_width(law, V, xi) : K_I / law->E_prime * r;
+        ilsai_tip_moments(law, V, xi, w, &M0, &M1);
+        sum += weight[k] * 2.0 * r / (r0 + r1) * M0;
+    }
+    return width < h ? sum * (width / h) : sum;
+}
+
+double ilsai_tipcell_volume(const tip_law *law, double V, double K_I, const tipcell_front *front) {
+    const tipcell_chord c = chord_of(front);
+    if (front->ell <= 0.0)
+        return 0.0;
+    double mean = mean_M0(law, V, K_I, c.h, front->ell);
+    if (front->ell > c.H)
+        mean -= mean_M0(law, V, K_I, c.h, front->ell - c.H);
+    return c.length * mean;
+}
+
+void ilsai_tipcell_enter(tipcell_history *history, double t_A) {
+    history->count = 1;
+    history->t[0] = t_A;
+    history->ell[0] = 0.0;
+}
+
+/* Twice the area of the triangle of three knots: what the path loses with the middle one. */
+static double knot_weight(const double t[3], const double ell[3]) {
+    return fabs((t[1] - t[0]) * (ell[2] - ell[0]) - (t[2] - t[0]) * (ell[1] - ell[0]));
+}
+
+/* Drops the inner knot whose loss changes the path least, the new one taken for the last. */
+static void history_drop(tipcell_history *history, double t, double ell) {
+    int least = 1;
+    double least_weight = HUGE_VAL;
+    for (int k = 1; k < history->count; k++) {
+        const int n = k + 1 < history->count;
+        const double weight = knot_weight(
+            (double[]){history->t[k - 1], history->t[k], n ? history->t[k + 1] : t},
+            (double[]){history->ell[k - 1], history->ell[k], n ? history->ell[k + 1] : ell});
+        if (weight < least_weight) {
+            least_weight = weight;
+            least = k;
+        }
+    }
+    history->count--;
+    for (int k = least; k < history->count; k++) {
+        history->t[k] = history->t[k + 1];
+        history->ell[k] = history->ell[k + 1];
+    }
+}
+
+void ilsai_tipcell_record(tipcell_history *history, double t, double ell) {
+    ell = fmax(ell, history->ell[history->count - 1]);
+    if (history->count == TIPCELL_KNOTS)
+        history_drop(history, t, ell);
+    history->t[history->count] = t;
+    history->ell[history->count] = ell;
+    history->count++;
+}
+
+/*
+ * Integral of (t - t_0)^(1/2) times the chord over a piece of s of length ds, both linear in s:
+ * from p = (t - t_0)^(1/2) and chord a at its wet end to q < p and b at its end towards the front.
+ */
+static double leakoff_piece(double ds, double p, double q, double a, double b) {
+    const double sum = p + q;
+    if (!(ds > 0.0) || !(sum > 0.0))
+        return 0.0;
+    const double p2 = p * p, q2 = q * q;
+    const double at_a = p * (3.0 * p2 + 6.0 * p * q + 4.0 * q2) + 2.0 * q2 * q;
+    const double at_b = 2.0 * p2 * p + q * (4.0 * p2 + 6.0 * p * q + 3.0 * q2);
+    return 2.0 / 15.0 * ds * (a * at_a + b * at_b) / (sum * sum);
+}
+
+/* One segment of the path, along which age = t - t_0 falls linearly, cut at the corners. */
+static double leakoff_segment(const tipcell_chord *chord, const double s[2], const double age[2]) {
+    const double corner[4] = {chord->h, chord->H, chord->H + chord->h, HUGE_VAL};
+    double from = s[0], p = sqrt(age[0]), sum = 0.0;
+    for (int k = 0; k < 4 && from < s[1]; k++) {
+        if (corner[k] <= from)
+            continue;
+        const double to = fmin(corner[k], s[1]), part = (to - s[0]) / (s[1] - s[0]);
+        const double q = sqrt(age[0] + part * (age[1] - age[0]));
+        sum += leakoff_piece(to - from, p, q, chord_at(chord, from), chord_at(chord, to));
+        from = to;
+        p = q;
+    }
+    return sum;
+}
+
+double ilsai_tipcell_leakoff_path(double C_prime, const tipcell_front *front, int count,
+                                  const double *t, const double *ell) {
+    const tipcell_chord chord = chord_of(front);
+    double sum = 0.0;
+    for (int k = 0; k + 1 < count; k++) {
+        const double age[2] = {t[count - 1] - t[k], t[count - 1] - t[k + 1]};
+        sum += leakoff_segment(&chord, ell + k, age);
+    }
+    return 2.0 * C_prime * sum;
+}
+
+double ilsai_tipcell_leakoff(double C_prime, const tipcell_front *front,
+                             const tipcell_history *history) {
+    const int n = history->count;
+    const double *t = history->t, *ell = history->ell;
+    if (n > 2) {
+        const double first = (ell[1] - ell[0]) / (t[1] - t[0]);
+        const double last = (ell[n - 1] - ell[n - 2]) / (t[n - 1] - t[n - 2]);
+        if (fabs(last - first) <= 0.2 * first)
+            return ilsai_tipcell_leakoff_path(C_prime, front, 2, (double[]){t[0], t[n - 1]},
+                                              (double[]){ell[0], ell[n - 1]});
+    }
+    return ilsai_tipcell_leakoff_path(C_prime, front, n, t, ell);
+}

@@ -1,0 +1,58 @@
+/* Constants of the numerics, with unit and reason, and what each level sets. */
+#ifndef ILSAI_TUNING_H
+#define ILSAI_TUNING_H
+
+/* GMRES: vectors kept. The stencil preconditioner needs under 40 iterations at 15 000 cells. */
+#define ILSAI_GMRES_RESTART 60
+/* GMRES: iterations after which a step is given up. */
+#define ILSAI_GMRES_ITERATIONS 240
+/* GMRES: relative residual of one Newton system; Newton then gains three digits an iteration. */
+#define ILSAI_GMRES_TOLERANCE 1e-3
+/* Unknowns up to which the dense factorisation is the faster one. */
+#define ILSAI_DENSE_UNKNOWNS 100
+/* Part of a width that one Newton step may take away. */
+#define ILSAI_WIDTH_DROP 0.9
+/* Newton iterations of one coupled solve before the step is given up. */
+#define ILSAI_NEWTON_MAX 25
+
+/* Front: passes before a step is given up, and the memory of the Anderson acceleration. */
+#define ILSAI_FRONT_PASSES_MAX 60
+#define ILSAI_ANDERSON_DEPTH   5
+/* Front: largest advance in one step, in cells; a cell entered and left in a step is still right.
+ */
+#define ILSAI_ADVANCE_MAX 2.0
+/* Front: a cell counts as wet from this ell on, in cells. */
+#define ILSAI_WET_MIN 1e-4
+/* Volume: largest correction of the widths that the balance may ask for. */
+#define ILSAI_BALANCE_MAX 1e-2
+/* Front: how far beyond it distances are kept, in cell diagonals. */
+#define ILSAI_BAND 2.0
+
+/* Time: growth of the step after an accepted one, cut after a rejected one. */
+#define ILSAI_DT_GROWTH 1.5
+#define ILSAI_DT_CUT    0.5
+/* Time: longest step where the front stands still, as a part of the time so far. */
+#define ILSAI_DT_RESTING 0.1
+/* Time: smallest step relative to the time so far before an advance gives up. */
+#define ILSAI_DT_SMALLEST 1e-12
+
+/* Source: closer to a cell edge than this, in cells, it feeds the cells on both sides. */
+#define ILSAI_EDGE_CELLS 1e-9
+/* Start: smallest radius of the penny, in cells. */
+#define ILSAI_START_CELLS 2.0
+
+/* Coarsening: new cells that a footprint must have across, and how far behind the survey cells
+ * distances are measured anew, in new cell diagonals. */
+#define ILSAI_COARSEN_LEAST 4
+#define ILSAI_COARSEN_REACH 3.0
+
+/* Levels 1 .. 5: advance of the front per step and tolerance of the front, both in cells. */
+#define ILSAI_LEVELS 5
+#define ILSAI_LEVEL_STEP                                                                           \
+    { 1.0, 0.75, 0.5, 0.35, 0.25 }
+#define ILSAI_LEVEL_TOLERANCE                                                                      \
+    { 1e-2, 3e-3, 1e-3, 3e-4, 1e-5 }
+/* Tolerance of the widths relative to that of the front: w changes half as much as s. */
+#define ILSAI_WIDTH_TOLERANCE 0.1
+
+#endif
