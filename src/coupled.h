@@ -27,8 +27,8 @@ typedef struct coupled_problem {
     double *pressure;          /* in: first guess in tip cells; out: solution */
     double dt, mu_prime;
     ilsa_linear_solver linear;
-    double tolerance; /* of the largest relative change of width */
-    int max_newton;
+    double tolerance; /* of the error in width, relative to the largest */
+    int fresh;        /* 1: the first solve of a step: nothing of the last one is used */
 } coupled_problem;
 
 typedef struct coupled_counts {
@@ -37,7 +37,8 @@ typedef struct coupled_counts {
 } coupled_counts;
 
 /*
- * Solves the problem; counts are added to. ILSA_STEP_REJECTED when Newton's method does not
+ * Solves the problem; the pressures of the channel are those before the last change of width, see
+ * ilsai_coupled_pressure. counts are added to. ILSA_STEP_REJECTED when Newton's method does not
  * converge, ILSA_CLOSED when it ends with a width at zero, ILSA_ERR_MEMORY, ILSA_ERR_NUMERIC.
  */
 ilsa_status ilsai_coupled_solve(coupled *c, const coupled_problem *problem, coupled_counts *counts);
@@ -45,7 +46,7 @@ ilsa_status ilsai_coupled_solve(coupled *c, const coupled_problem *problem, coup
 /* Unknowns of the last solve. */
 int ilsai_coupled_unknowns(const coupled *c);
 
-/* pressure = sigma + C width in the channel cells (4.7), from widths whose images are set. */
+/* pressure = sigma + C width in the channel cells (4.7), for the widths of the last solve. */
 void ilsai_coupled_pressure(coupled *c, const coupled_problem *problem, coupled_counts *counts);
 
 #endif

@@ -1,10 +1,9 @@
 #include "elasticity.h"
+#include "dft.h"
 #include "fft.h"
 
-#include <cblas.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 static const double pi = 3.14159265358979323846;
 
@@ -56,18 +55,17 @@ double ilsai_kernel(long i, long j, double dx, double dy) {
 
 /* The product */
 
-/* What a box needs; made anew only when the capacity changes. */
+/* What a box needs; made anew only when the capacity changes. One of the transforms is there. */
 typedef struct engine {
-    int cx, cy;       /* largest box */
-    double *table;    /* C(i, j) at j * cx + i */
-    fft *transform;   /* FFT */
-    double *toeplitz; /* BLAS: one block of the matrix, */
-    double *folded;   /* and the widths it multiplies */
+    int cx, cy;    /* largest box */
+    double *table; /* C(i, j) at j * cx + i */
+    fft *by_fft;
+    dft *by_blas;
 } engine;
 
 struct elasticity {
     double E_prime, dx, dy;
-    int by_fft;
+    int use_fft;
     int bx, by; /* the box in use */
     engine engine;
 };
@@ -81,18 +79,14 @@ static int capacity(int b) {
     int unit = 2;
     while (7 * unit < b)
         unit *= 2;
-    for (int c = 4; c <= 7; c++)
-        if (c * unit >= b)
-            return c * unit;
-    return 8 * unit;
-}
-
-static double *alloc_doubles(size_t rows, size_t columns) {
-    return malloc(rows * columns * sizeof(double));
+    int c = 4;
+    while (c * unit < b)
+        c++;
+    return c * unit;
 }
 
 static double *make_table(const elasticity *e, int cx, int cy) {
-    double *table = alloc_doubles((size_t)cx, (size_t)cy);
+    double *table = malloc((size_t)cx * (size_t)cy * sizeof *table);
     if (!table)
         return NULL;
     for (int j = 0; j < cy; j++)
@@ -103,23 +97,19 @@ static double *make_table(const elasticity *e, int cx, int cy) {
 }
 
 static void engine_destroy(engine *n) {
-    ilsai_fft_destroy(&n->transform);
+    ilsai_fft_destroy(&n->by_fft);
+    ilsai_dft_destroy(&n->by_blas);
     free(n->table);
-    free(n->toeplitz);
-    free(n->folded);
     *n = (engine){0};
 }
 
 static ilsa_status engine_create(const elasticity *e, int cx, int cy, engine *made) {
     engine n = {.cx = cx, .cy = cy, .table = make_table(e, cx, cy)};
-    if (n.table && e->by_fft)
-        n.transform = ilsai_fft_create(cx, cy, n.table);
-    if (n.table && !e->by_fft) {
-        size_t side = (size_t)(cx < cy ? cx : cy);
-        n.toeplitz = alloc_doubles(side, side);
-        n.folded = alloc_doubles((size_t)cx, (size_t)cy);
-    }
-    if (!n.transform && !(n.toeplitz && n.folded)) {
+    if (n.table && e->use_fft)
+        n.by_fft = ilsai_fft_create(cx, cy, n.table);
+    else if (n.table)
+        n.by_blas = ilsai_dft_create(cx, cy, n.table);
+    if (!n.by_fft && !n.by_blas) {
         engine_destroy(&n);
         return ILSA_ERR_MEMORY;
     }
@@ -142,7 +132,7 @@ ilsa_status ilsai_elasticity_create(double E_prime, double dx, double dy, ilsa_p
     made->E_prime = E_prime;
     made->dx = dx;
     made->dy = dy;
-    made->by_fft = method != ILSA_PRODUCT_BLAS && ilsai_fft_available();
+    made->use_fft = method != ILSA_PRODUCT_BLAS && ilsai_fft_available();
     *e = made;
     return ILSA_OK;
 }
@@ -170,81 +160,17 @@ ilsa_status ilsai_elasticity_set_box(elasticity *e, int bx, int by) {
     return ILSA_OK;
 }
 
+ilsa_product ilsai_elasticity_method(const elasticity *e) {
+    return e->use_fft ? ILSA_PRODUCT_FFT : ILSA_PRODUCT_BLAS;
+}
+
 double ilsai_elasticity_entry(const elasticity *e, int i, int j) {
     return e->engine.table[(size_t)abs(j) * (size_t)e->engine.cx + (size_t)abs(i)];
 }
 
-/*
- * Without FFT the matrix is taken apart into symmetric Toeplitz blocks of the shorter side: block
- * d couples lines that lie d apart along the longer side. C is even, so that the lines at +d and
- * -d are added before they are multiplied, and each block is formed and used once.
- */
-
-/* toeplitz[r][c] = C at |r - c| along the shorter side and d along the longer. */
-static void form_block(const elasticity *e, int side, size_t step, const double *from) {
-    size_t n = (size_t)side;
-    double *t = e->engine.toeplitz;
-    for (size_t r = 0; r < n; r++)
-        for (size_t c = 0; c < n; c++)
-            t[r * n + c] = from[(r > c ? r - c : c - r) * step];
-}
-
-static void add_line(double *to, const double *from, size_t count) {
-    for (size_t n = 0; n < count; n++)
-        to[n] += from[n];
-}
-
-/* folded[j] = w[j - d] + w[j + d], whole rows. */
-static void fold_rows(elasticity *e, size_t d, const double *w, size_t stride) {
-    size_t bx = (size_t)e->bx, by = (size_t)e->by;
-    double *folded = e->engine.folded;
-    memset(folded, 0, bx * by * sizeof *folded);
-    for (size_t j = 0; j + d < by; j++) {
-        add_line(folded + (j + d) * bx, w + j * stride, bx);
-        if (d > 0)
-            add_line(folded + j * bx, w + (j + d) * stride, bx);
-    }
-}
-
-/* folded[j][i] = w[j][i - d] + w[j][i + d]. */
-static void fold_columns(elasticity *e, size_t d, const double *w, size_t stride) {
-    size_t bx = (size_t)e->bx, by = (size_t)e->by;
-    double *folded = e->engine.folded;
-    memset(folded, 0, bx * by * sizeof *folded);
-    for (size_t j = 0; j < by; j++) {
-        add_line(folded + j * bx + d, w + j * stride, bx - d);
-        if (d > 0)
-            add_line(folded + j * bx, w + j * stride + d, bx - d);
-    }
-}
-
-static void multiply_by_rows(elasticity *e, const double *w, double *p, size_t stride) {
-    for (int d = 0; d < e->by; d++) {
-        form_block(e, e->bx, 1, e->engine.table + (size_t)d * (size_t)e->engine.cx);
-        fold_rows(e, (size_t)d, w, stride);
-        cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, e->by, e->bx, e->bx, 1,
-                    e->engine.folded, e->bx, e->engine.toeplitz, e->bx, d > 0, p, (int)stride);
-    }
-}
-
-static void multiply_by_columns(elasticity *e, const double *w, double *p, size_t stride) {
-    for (int d = 0; d < e->bx; d++) {
-        form_block(e, e->by, (size_t)e->engine.cx, e->engine.table + d);
-        fold_columns(e, (size_t)d, w, stride);
-        cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, e->by, e->bx, e->by, 1,
-                    e->engine.toeplitz, e->by, e->engine.folded, e->bx, d > 0, p, (int)stride);
-    }
-}
-
 void ilsai_elasticity_multiply(elasticity *e, const double *w, double *p, size_t stride) {
-    if (e->by_fft)
-        ilsai_fft_convolve(e->engine.transform, e->bx, e->by, w, p, stride);
-    else if (e->bx <= e->by)
-        multiply_by_rows(e, w, p, stride);
+    if (e->use_fft)
+        ilsai_fft_convolve(e->engine.by_fft, e->bx, e->by, w, p, stride);
     else
-        multiply_by_columns(e, w, p, stride);
-}
-
-ilsa_product ilsai_elasticity_method(const elasticity *e) {
-    return e->by_fft ? ILSA_PRODUCT_FFT : ILSA_PRODUCT_BLAS;
+        ilsai_dft_convolve(e->engine.by_blas, e->bx, e->by, w, p, stride);
 }

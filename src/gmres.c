@@ -209,11 +209,8 @@ gmres_result ilsai_gmres_solve(gmres *g, size_t n, gmres_operator *A, gmres_oper
     gmres_result result = {0, beta, 0};
     memset(x, 0, n * sizeof *x);
     memcpy(g->basis, b, n * sizeof *b);
-    int state = CYCLE_GOES_ON;
-    while (isfinite(beta) && beta > target && state == CYCLE_GOES_ON &&
-           result.iterations < max_iterations) {
-        state = cycle(&s, beta, target, max_iterations - result.iterations, x, &result);
-        beta = result.residual;
+    while (isfinite(beta) && beta > target && result.iterations < max_iterations) {
+        int state = cycle(&s, beta, target, max_iterations - result.iterations, x, &result);
         if (state != CYCLE_GOES_ON || result.iterations + 1 >= max_iterations)
             break;
         beta = result.residual = true_residual(&s, b, x);

@@ -127,13 +127,15 @@ static sample sample_at_tip(double depth, double share) {
 }
 
 static void place_samples(sample samples[SAMPLES]) {
-    for (int i = 0; i < INNER; i++) {
-        samples[i] = sample_inside(i / GAUSS + GAUSS3_X[i % GAUSS], GAUSS3_W[i % GAUSS]);
-    }
     double panel = (TIP_DEPTH - DEPTH) / TIP_PANELS;
-    for (int i = 0; i < SAMPLES - INNER; i++) {
-        double depth = DEPTH + panel * (i / GAUSS + GAUSS3_X[i % GAUSS]);
-        samples[INNER + i] = sample_at_tip(depth, panel * GAUSS3_W[i % GAUSS]);
+    for (int k = 0; k < GAUSS; k++) {
+        double x = GAUSS3_X[k], share = GAUSS3_W[k];
+        for (int i = 0; i < LAST; i++) {
+            samples[GAUSS * i + k] = sample_inside(i + x, share);
+        }
+        for (int i = 0; i < TIP_PANELS; i++) {
+            samples[INNER + GAUSS * i + k] = sample_at_tip(DEPTH + panel * (i + x), panel * share);
+        }
     }
 }
 

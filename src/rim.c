@@ -87,8 +87,12 @@ static ilsa_status drop_unreached(ilsa_solver *s) {
     return ILSA_OK;
 }
 
-static unsigned char classify(const ilsa_solver *s, const front_cell *c) {
+static unsigned char classify(const ilsa_solver *s, const front_cell *c, int hold) {
     double full = ilsai_front_full(&s->g, c->cos_a, c->sin_a);
+    unsigned char was = s->trial.kind[c->cell];
+    if (hold && was != ILSA_CELL_EMPTY && fabs(c->ell - full) < ILSAI_HOLD * full) {
+        return was;
+    }
     if (c->ell >= full) {
         return ILSA_CELL_CHANNEL;
     }
@@ -132,8 +136,8 @@ static double mean_width(const ilsa_solver *s, const front_cell *c) {
     return ilsai_tipcell_volume(&s->material, V, K_I, &at) / (s->g.dx * s->g.dy);
 }
 
-static void set_cell(ilsa_solver *s, const front_cell *c, double dt) {
-    unsigned char was = s->trial.kind[c->cell], kind = classify(s, c);
+static void set_cell(ilsa_solver *s, const front_cell *c, double dt, int hold) {
+    unsigned char was = s->trial.kind[c->cell], kind = classify(s, c, hold);
     s->trial.kind[c->cell] = kind;
     s->trial.speed[c->cell] = c->V;
     if (kind == ILSA_CELL_EMPTY) {
@@ -173,7 +177,7 @@ static int grow_footprint(ilsa_solver *s, int cell) {
     return b->x0 > 0 && b->y0 > 0 && b->x1 < s->g.nx - 1 && b->y1 < s->g.ny - 1;
 }
 
-ilsa_status ilsai_rim_set(ilsa_solver *s, double dt) {
+ilsa_status ilsai_rim_set(ilsa_solver *s, double dt, int hold) {
     int count;
     const front_cell *cells = ilsai_front_cells(s->march, &count);
     if (ilsai_has_leakoff(s) && ilsai_tip_records_reserve(&s->trial_tips, count) != ILSA_OK) {
@@ -183,7 +187,7 @@ ilsa_status ilsai_rim_set(ilsa_solver *s, double dt) {
     s->trial_tips.count = 0;
     s->trial_footprint = s->now.footprint;
     for (int k = 0; k < count && status == ILSA_OK; k++) {
-        set_cell(s, &cells[k], dt);
+        set_cell(s, &cells[k], dt, hold);
         if (s->trial.kind[cells[k].cell] != ILSA_CELL_EMPTY) {
             guess_pressure(s, &cells[k]);
             if (!grow_footprint(s, cells[k].cell)) {

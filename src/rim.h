@@ -11,9 +11,10 @@
 ilsa_status ilsai_rim_begin(ilsa_solver *s, double dt);
 
 /*
- * Kinds, tip widths, leak-off and footprint for the front as marched. ILSA_MESH_EDGE,
- * ILSA_ERR_MEMORY, ILSA_STEP_REJECTED (a wet cell is out of the front's reach).
+ * Kinds, tip widths, leak-off and footprint for the front as marched. hold: a cell that the front
+ * is about to fill keeps the kind it had in the pass before. ILSA_MESH_EDGE, ILSA_ERR_MEMORY,
+ * ILSA_STEP_REJECTED (a wet cell is out of the front's reach).
  */
-ilsa_status ilsai_rim_set(ilsa_solver *s, double dt);
+ilsa_status ilsai_rim_set(ilsa_solver *s, double dt, int hold);
 
 #endif

@@ -45,8 +45,7 @@ ilsa_status ilsai_fail(error_text *error, ilsa_status status, const char *format
         char text[sizeof error->text];
         va_list arguments;
         va_start(arguments, format);
-        if (vsnprintf(text, sizeof text, format, arguments) < 0)
-            text[0] = '\0';
+        vsnprintf(text, sizeof text, format, arguments);
         va_end(arguments);
         memcpy(error->text, text, strlen(text) + 1);
     }

@@ -115,14 +115,14 @@ static void place_front(ilsa_solver *s, double dt) {
 }
 
 /* Survey, tip and channel cells for the front where it is now. */
-static ilsa_status march(ilsa_solver *s, double dt) {
+static ilsa_status march(ilsa_solver *s, double dt, int hold) {
     place_front(s, dt);
     ilsa_status status = ilsai_front_march(s->march, &s->g, &s->region, s->field.kind, s->seeds,
                                            s->seed_count, ilsai_solver_band(s), s->trial.level);
-    return status == ILSA_OK ? ilsai_rim_set(s, dt) : status;
+    return status == ILSA_OK ? ilsai_rim_set(s, dt, hold) : status;
 }
 
-static coupled_problem pose(ilsa_solver *s, double dt, double change) {
+static coupled_problem pose(ilsa_solver *s, double dt, int pass, double change) {
     coupled_problem problem = {.g = &s->g,
                                .e = s->elastic,
                                .footprint = s->trial_footprint,
@@ -135,7 +135,7 @@ static coupled_problem pose(ilsa_solver *s, double dt, double change) {
                                .dt = dt,
                                .mu_prime = s->material.mu_prime,
                                .linear = s->def.linear,
-                               .max_newton = ILSAI_NEWTON_MAX};
+                               .fresh = pass == 0};
     double aim = 0.3 * change > s->tolerance ? 0.3 * change : s->tolerance;
     problem.tolerance = ILSAI_WIDTH_TOLERANCE * (aim < 0.1 ? aim : 0.1);
     return problem;
@@ -169,12 +169,12 @@ static ilsa_status iterate(ilsa_solver *s, double dt, coupled_counts *counts, il
     for (int pass = 0; pass < ILSAI_FRONT_PASSES_MAX; pass++) {
         double start = ilsai_clock();
         report->front_iterations++;
-        ilsa_status status = march(s, dt);
+        ilsa_status status = march(s, dt, pass >= ILSAI_HOLD_PASS);
         s->profile.front += ilsai_clock() - start;
         if (status != ILSA_OK) {
             return status;
         }
-        coupled_problem problem = pose(s, dt, change);
+        coupled_problem problem = pose(s, dt, pass, change);
         status = ilsai_coupled_solve(s->flow, &problem, counts);
         if (status != ILSA_OK) {
             return status;
@@ -187,6 +187,7 @@ static ilsa_status iterate(ilsa_solver *s, double dt, coupled_counts *counts, il
         }
         if (change <= s->tolerance) {
             *last_change = change;
+            ilsai_coupled_pressure(s->flow, &problem, counts);
             return ILSA_OK;
         }
         mix(s);

@@ -28,21 +28,20 @@ static ilsa_status no_memory(void) {
 }
 
 /* A new handle with the content given, its values copied from memory of any alignment. */
-static ilsa_status make(ilsa_stress content, const void *values, ilsa_stress **stress) {
+static ilsa_stress *make(ilsa_stress content, const void *values) {
     size_t bytes = value_count(&content) * sizeof *content.values;
     ilsa_stress *made = malloc(sizeof *made);
     content.values = bytes ? malloc(bytes) : NULL;
-    *stress = NULL;
     if (!made || (bytes && !content.values)) {
         free(made);
         free(content.values);
-        return no_memory();
+        no_memory();
+        return NULL;
     }
     if (bytes)
         memcpy(content.values, values, bytes);
     *made = content;
-    *stress = made;
-    return ILSA_OK;
+    return made;
 }
 
 ilsa_status ilsa_stress_create(const ilsa_stress_def *def, ilsa_stress **stress) {
@@ -56,7 +55,8 @@ ilsa_status ilsa_stress_create(const ilsa_stress_def *def, ilsa_stress **stress)
         status = ilsai_check_finite(error, "sigma", def->sigma);
     if (status)
         return status;
-    return make((ilsa_stress){.kind = STRESS_UNIFORM, .sigma = def->sigma}, NULL, stress);
+    *stress = make((ilsa_stress){.kind = STRESS_UNIFORM, .sigma = def->sigma}, NULL);
+    return *stress ? ILSA_OK : ILSA_ERR_MEMORY;
 }
 
 void ilsa_stress_destroy(ilsa_stress **stress) {
@@ -156,7 +156,8 @@ ilsa_status ilsa_stress_set_cells(ilsa_stress *stress, const ilsa_mesh *mesh, co
 }
 
 ilsa_status ilsai_stress_copy(const ilsa_stress *from, ilsa_stress **copy) {
-    return make(*from, from->values, copy);
+    *copy = make(*from, from->values);
+    return *copy ? ILSA_OK : ILSA_ERR_MEMORY;
 }
 
 /* Values on a mesh */
@@ -335,6 +336,8 @@ static int head_is_sound(const image_head *head) {
 }
 
 static int values_are_sound(const ilsa_stress *stress) {
+    if (!stress->values)
+        return 1;
     if (stress->kind == STRESS_LAYERS)
         return check_layers(NULL, stress->interfaces, stress->values,
                             stress->values + stress->interfaces) == ILSA_OK;
@@ -355,10 +358,13 @@ ilsa_status ilsai_stress_read(const unsigned char *image, size_t size, ilsa_stre
                         .sigma = head.sigma};
     if (size - sizeof head < value_count(&seen) * sizeof *seen.values)
         return malformed();
-    ilsa_status status = make(seen, image + sizeof head, stress);
-    if (!status && !values_are_sound(*stress)) {
-        ilsa_stress_destroy(stress);
-        status = malformed();
+    ilsa_stress *made = make(seen, image + sizeof head);
+    if (!made)
+        return ILSA_ERR_MEMORY;
+    if (!values_are_sound(made)) {
+        ilsa_stress_destroy(&made);
+        return malformed();
     }
-    return status;
+    *stress = made;
+    return ILSA_OK;
 }

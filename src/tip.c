@@ -23,12 +23,14 @@
 #define MOMENT_P0 0.377               /* after (3.18) */
 #define MOMENT_P1 0.260
 
-/* A Newton step in ln x below this leaves an error of its square. */
-#define STEP_SMALL 1e-7
+/* Newton in ln x ends where step^2 times the step before, the error to come, is below this. */
+#define LAST_STEP   1e-12
+#define NEWTON_MOST 20
+#define ROUNDING    1e-14
 
 /* Where a root is looked for. */
-#define X_LEAST 1e-280
-#define X_MOST  1e280
+#define X_LEAST 1e-250
+#define X_MOST  1e250
 
 /* G(K, B) and what its derivatives are made of. */
 typedef struct tip_bracket {
@@ -49,9 +51,9 @@ typedef struct tip_factor {
     double value, dlog;
 } tip_factor;
 
-/* The value of an increasing function of ln x, its slope, and its derivative by ln w. */
+/* The value of an increasing function of ln x and its slope; d ln(s - s0) / d ln w for (4.9). */
 typedef struct tip_residual {
-    double value, slope, by_w;
+    double value, slope, v_by_w;
 } tip_residual;
 
 typedef tip_residual (*tip_equation)(const void *problem, double x);
@@ -96,7 +98,7 @@ static double gauss_16(double kappa, double theta, double omega) {
 
 /* (3.11) as printed: exact enough where B is small, and needed where the pole is near u = K. */
 static double bracket_printed(double K, double kappa, double B) {
-    const double logarithm = B > 0.0 ? B * B * B * log1p(kappa / (K + B)) : 0.0;
+    const double logarithm = B > 1e-30 ? B * B * B * log1p(kappa / (K + B)) : 0.0;
     const double cubic = kappa * (1.0 + K + K * K) / 3.0;
     return (1.0 + B) * (cubic - 0.5 * B * kappa * (1.0 + K) + B * B * kappa - logarithm);
 }
@@ -152,41 +154,51 @@ static tip_g g_delta(double K, double kappa, double C) {
     const tip_bracket zeroth = bracket(K, kappa, B0_PER_C * C);
     const double delta = zeroth.G; /* (3.13) */
     const tip_factor C1 = factor_C1(delta), C2 = factor_C1(1.5 * delta);
-    const tip_bracket f = bracket(K, kappa, C * C2.value / C1.value);
+    const tip_bracket f = bracket(K, kappa, C * (C2.value / C1.value));
     const double by_b = f.by_B / f.G;
     const double by_delta = by_b * (1.5 * C2.dlog - C1.dlog) - C1.dlog;
     return (tip_g){f.theta * f.G / C1.value, f.by_kappa / f.G + by_delta * zeroth.by_kappa,
                    by_b + by_delta * (zeroth.omega * zeroth.G + zeroth.by_B)};
 }
 
-/* (3.17) with s = g0 (beta_m^3 + beta_mt^4 C) = (3 + 4 b0 C) F. */
-static double delta_p(double K, double C, double p) {
+/* (3.17) with s = g0 (beta_m^3 + beta_mt^4 C) = (3 + 4 b0 C) F, for p[0] and p[1]. */
+static void delta_p(double K, double C, const double p[2], double delta[2]) {
+    delta[0] = delta[1] = 0.0;
     if (K >= 1.0)
-        return 0.0;
+        return;
     const tip_bracket f = bracket(K, 1.0 - K, B0_PER_C * C);
-    return (1.0 - p + p * (4.0 - f.theta) * f.G) * f.G;
+    for (int k = 0; k < 2; k++)
+        delta[k] = (1.0 - p[k] + p[k] * (4.0 - f.theta) * f.G) * f.G;
 }
 
 /*
- * Root of an increasing function of ln x between X_LEAST and X_MOST, or the end that is nearer to
- * it: Newton, kept inside the interval that it has found.
+ * Root of an increasing function of ln x, or the end of the range beyond which it lies: Newton,
+ * kept inside the interval that it has found, and bisection should Newton fail. The second
+ * derivative that two slopes give makes the last step one of third order.
  */
 static double solve(tip_equation equation, const void *problem, double x, tip_residual *last) {
-    double low = X_LEAST, high = X_MOST;
-    while (low < high * (1.0 - STEP_SMALL)) {
+    double low = X_LEAST, high = X_MOST, before = 1.0, slope_before = 0.0;
+    x = fmin(fmax(x, low), high);
+    for (int k = 0; low < high * (1.0 - ROUNDING); k++) {
         *last = equation(problem, x);
         const double step = -last->value / last->slope;
-        if (fabs(step) < STEP_SMALL)
-            return x + x * step;
+        if (step * step * fabs(before) < LAST_STEP) {
+            const double curvature = k > 0 ? (last->slope - slope_before) / before : 0.0;
+            return x * exp(step - 0.5 * curvature / last->slope * step * step);
+        }
         if (last->value > 0.0)
             high = x;
         else
             low = x;
         x *= exp(step);
-        if (!(x > low && x < high))
+        before = step;
+        slope_before = last->slope;
+        if (k >= NEWTON_MOST || !(x > low && x < high)) {
             x = sqrt(low) * sqrt(high);
+            before = HUGE_VAL;
+        }
     }
-    return x;
+    return high < X_MOST ? (low > X_LEAST ? x : X_LEAST) : X_MOST;
 }
 
 /*
@@ -205,13 +217,17 @@ static tip_residual width_residual(const void *problem, double e) {
                           .slope = f.by_kappa * K + kappa * (3.0 - f.by_C)};
 }
 
-/* e of the zeroth order (3.6) with F taken as (1 - K^4) / (4 (u + B)), 3/4 <= u <= 1. */
+/*
+ * e with F taken as (1 - K^4) / (4 (u + B)), 3/4 <= u <= 1, and C1 as linear in delta: the sum of
+ * the fourth powers of (3.3) first, then (3.11) once.
+ */
 static double width_start(const width_problem *p) {
-    const double w_k2 = p->w_k * p->w_k, w_m3 = BETA_M3 * p->m3;
-    const double w_mt4 = 4.0 / 3.0 * B0_PER_C * w_m3 * p->a;
-    const double first = sqrt(sqrt(w_k2 * w_k2 + w_mt4 + w_m3 * cbrt(w_m3)));
-    const double K = p->w_k / first;
-    const double rise = (1.0 + K) * (1.0 + K * K) / (1.0 + K + K * K) * w_m3 * first + w_mt4;
+    const double w_k2 = p->w_k * p->w_k, w_m3 = BETA_M3 * p->m3, b = B0_PER_C * p->a;
+    const double first = sqrt(sqrt(w_k2 * w_k2 + w_m3 * (cbrt(w_m3) + 4.0 / 3.0 * b)));
+    const double K = p->w_k / first, K2 = K * K, B = b / first;
+    const double u = 0.75 * (1.0 + K) * (1.0 + K2) / (1.0 + K + K2);
+    const double delta = 0.25 * (1.0 - K2 * K2) * (1.0 + B) / (u + B);
+    const double rise = 4.0 * (4.0 * PI - 6.5 * delta) * p->m3 * (u * first + b);
     const double w2 = sqrt(w_k2 * w_k2 + rise);
     return rise / ((sqrt(w2) + p->w_k) * (w2 + w_k2));
 }
@@ -236,6 +252,9 @@ static double log_or_minus_infinity(double x) {
     return x > 0.0 ? log(x) : -HUGE_VAL;
 }
 
+/* Logarithms are limited to this before exp. */
+#define LOG_MOST 600.0
+
 /* Where C_hat is beyond e^230 only its product with s_hat matters. */
 #define LOG_C_MOST 230.0
 
@@ -251,7 +270,7 @@ static double width_by_logarithms(const tip_law *law, double V, double s) {
     const double excess = fmax(a - unit - LOG_C_MOST, 0.0);
     a -= unit + excess;
     m3 -= 3.0 * unit - excess;
-    if (m3 < -600.0)
+    if (m3 < -LOG_MOST)
         return exp(w_k);
     return exp(unit + log(width_solve(&(width_problem){exp(w_k - unit), exp(a), exp(m3)})));
 }
@@ -266,17 +285,31 @@ double ilsai_tip_width(const tip_law *law, double V, double s) {
                                         law->mu_prime / law->E_prime * V * s * s});
 }
 
-void ilsai_tip_moments(const tip_law *law, double V, double s, double w, double *M0, double *M1) {
-    double p0 = 0.0, p1 = 0.0;
-    if (V > 0.0) {
-        const double root = sqrt(s);
-        const double K = law->K_prime / law->E_prime * root / w;
-        const double C = 2.0 * law->C_prime * root / (sqrt(V) * w);
-        p0 = delta_p(K, C, MOMENT_P0);
-        p1 = delta_p(K, C, MOMENT_P1);
+/* K_hat and C_hat of (3.10) for V > 0. */
+static void scaled_variables(const tip_law *law, double V, double s, double w, double *K,
+                             double *C) {
+    if (is_plain_law(law) && is_plain(V) && is_plain(s) && is_plain(w)) {
+        const double root = sqrt(s) / w;
+        *K = law->K_prime / law->E_prime * root;
+        *C = 2.0 * law->C_prime / sqrt(V) * root;
+        return;
     }
-    *M0 = 2.0 * w * s / (3.0 + p0);
-    *M1 = 2.0 * w * s * s / (5.0 + p1);
+    const double log_root = 0.5 * log(s) - log(w);
+    const double log_K = log_or_minus_infinity(law->K_prime) - log(law->E_prime) + log_root;
+    const double log_C = log(2.0) + log_or_minus_infinity(law->C_prime) - 0.5 * log(V) + log_root;
+    *K = exp(fmin(log_K, LOG_MOST));
+    *C = exp(fmin(log_C, LOG_MOST));
+}
+
+void ilsai_tip_moments(const tip_law *law, double V, double s, double w, double *M0, double *M1) {
+    double delta[2] = {0.0, 0.0};
+    if (V > 0.0) {
+        double K, C;
+        scaled_variables(law, V, s, w, &K, &C);
+        delta_p(K, C, (double[]){MOMENT_P0, MOMENT_P1}, delta);
+    }
+    *M0 = 2.0 * w * s / (3.0 + delta[0]);
+    *M1 = 2.0 * w * s * s / (5.0 + delta[1]);
 }
 
 /*
@@ -296,18 +329,20 @@ static tip_residual distance_residual(const void *problem, double x) {
     const double K = p->K0 * root, kappa = p->gap * f / (1.0 + K);
     const tip_g h = g_delta(K, kappa, p->C0 * root / sqrt(xi));
     const double by_K = h.by_kappa * K / kappa;
-    const double log_s = S < 1e90 ? log(xi * (S * S) / h.g) : log(xi / h.g) + 2.0 * log(S);
-    return (tip_residual){.value = p->log_m0 + log_s,
-                          .slope = f * (1.0 + (0.5 * h.by_C + xi * (0.5 * by_K + 2.0)) / S),
-                          .by_w = h.by_C - by_K - 3.0};
+    const double log_s = S < 1e30 && h.g > 1e-100
+                             ? log(xi * (S * S) / h.g)
+                             : log(xi) + 2.0 * log(S) - log(fmax(h.g, DBL_MIN));
+    const double by_xi = 1.0 + (0.5 * h.by_C + xi * (0.5 * by_K + 2.0)) / S;
+    return (tip_residual){
+        .value = p->log_m0 + log_s, .slope = f * by_xi, .v_by_w = (3.0 + by_K - h.by_C) / by_xi};
 }
 
 /* The sum of the inverses of the vertex solutions of (4.9), each of its two limits in xi. */
 static double distance_start(const distance_problem *p) {
-    const double m = fmin(p->log_m0 + log(BETA_M3), 600.0);
+    const double m = fmin(p->log_m0 + log(BETA_M3), LOG_MOST);
     double inverse = exp(m) + exp(m / 3.0);
     if (p->C0 > 0.0) {
-        const double mt = fmin(2.0 * (m + log(4.0 / 3.0 * B0_PER_C * p->C0)), 600.0);
+        const double mt = fmin(2.0 * (m + log(4.0 / 3.0 * B0_PER_C * p->C0)), LOG_MOST);
         inverse += exp(mt) + exp(mt / 6.0);
     }
     return 1.0 / inverse;
@@ -344,8 +379,12 @@ tip_front ilsai_tip_distance(const tip_law *law, double w, double s0, double dt)
     p.xi_rate = p.K0 * p.K0 / p.gap;
     tip_residual last;
     const double x = solve(distance_residual, &p, distance_start(&p), &last);
-    const double xi = 1.0 / (1.0 / x + p.xi_rate), v = s0 * xi;
-    return (tip_front){s0 + v, v / dt, -last.by_w / last.slope * (xi / x) * v / w};
+    if (x <= X_LEAST) /* beyond the double range, both ways */
+        return (tip_front){s0, 0.0, 0.0};
+    if (x >= X_MOST && p.xi_rate < 1e-200)
+        return (tip_front){HUGE_VAL, HUGE_VAL, 0.0};
+    const double v = s0 / (1.0 / x + p.xi_rate);
+    return (tip_front){s0 + v, v / dt, last.v_by_w * v / w};
 }
 
 static bool is_positive(double x) {
@@ -375,7 +414,9 @@ double ilsa_tip_g_delta(double K_hat, double C_hat) {
 double ilsa_tip_delta_p(double K_hat, double C_hat, double p) {
     if (!is_not_negative(K_hat) || !is_not_negative(C_hat) || !(p >= 0.0 && p <= 1.0))
         return NAN;
-    return delta_p(K_hat, C_hat, p);
+    double delta[2];
+    delta_p(K_hat, C_hat, (double[]){p, p}, delta);
+    return delta[0];
 }
 
 ilsa_status ilsa_tip_width(const ilsa_material_def *scaled, double V, double s, double *w) {
@@ -419,36 +460,43 @@ ilsa_status ilsa_tip_distance(const ilsa_material_def *scaled, double w, double 
     return ILSA_OK;
 }
 
-/* The vertex widths (3.3) over w, at most 1: the closed form may be 0.14 % below a vertex. */
-static void vertex_ratios(const tip_law *law, double V, double s, double w, double ratio[3]) {
+enum { VERTEX_K, VERTEX_MT, VERTEX_M, VERTICES };
+
+/* Logarithms of the vertex widths (3.3) over w. */
+static void vertex_ratios(const tip_law *law, double V, double s, double w,
+                          double ratio[VERTICES]) {
     const double log_w = log(w), log_s = log(s), log_E = log(law->E_prime);
     const double log_V = log(V), log_mu = log(law->mu_prime);
+    const double log_K = log_or_minus_infinity(law->K_prime);
     const double log_C = log(2.0) + log_or_minus_infinity(law->C_prime);
-    const double k = log_or_minus_infinity(law->K_prime) - log_E + 0.5 * log_s;
-    const double mt = log(BETA_MT) + 0.25 * (log_mu + 0.5 * log_V + log_C - log_E) + 0.625 * log_s;
-    const double m = log(BETA_M) + (log_mu + log_V - log_E) / 3.0 + 2.0 / 3.0 * log_s;
-    ratio[0] = exp(fmin(k - log_w, 0.0));
-    ratio[1] = exp(fmin(mt - log_w, 0.0));
-    ratio[2] = exp(fmin(m - log_w, 0.0));
+    ratio[VERTEX_K] = log_K - log_E + 0.5 * log_s - log_w;
+    ratio[VERTEX_MT] =
+        log(BETA_MT) + 0.25 * (log_mu + 0.5 * log_V + log_C - log_E) + 0.625 * log_s - log_w;
+    ratio[VERTEX_M] = log(BETA_M) + (log_mu + log_V - log_E + 2.0 * log_s) / 3.0 - log_w;
 }
 
 /*
- * (3.19) times the product of the three differences, which removes its singularities at the
- * vertices. Where two differences vanish (a width below the closed form) toughness comes first,
- * then leak-off.
+ * (3.19) times the product of the three differences, which removes its singularities. A vertex at
+ * or above w (the closed form can be 0.14 % below one) takes all; of several the highest.
  */
-static void shape_functions(const double ratio[3], double N[3]) {
+static void shape_functions(const double ratio[VERTICES], double N[VERTICES]) {
+    int top = VERTEX_K;
+    for (int i = 0; i < VERTICES; i++) {
+        if (ratio[i] > ratio[top])
+            top = i;
+    }
     double sum = 0.0;
-    for (int i = 0; i < 3; i++) {
-        N[i] = ratio[i] * (1.0 - ratio[(i + 1) % 3]) * (1.0 - ratio[(i + 2) % 3]);
+    for (int i = 0; i < VERTICES; i++) {
+        const int j = (i + 1) % VERTICES, k = (i + 2) % VERTICES;
+        N[i] = exp(ratio[i] - ratio[top]);
+        if (ratio[top] < 0.0)
+            N[i] *= expm1(ratio[j]) * expm1(ratio[k]);
+        else if (i != top)
+            N[i] = 0.0;
         sum += N[i];
     }
-    for (int i = 0; i < 3; i++)
-        N[i] = sum > 0.0 ? N[i] / sum : 0.0;
-    for (int i = 0; i < 3 && !(sum > 0.0); i++) {
-        if (ratio[i] >= 1.0)
-            sum = N[i] = 1.0;
-    }
+    for (int i = 0; i < VERTICES; i++)
+        N[i] /= sum;
 }
 
 ilsa_status ilsa_tip_triangle(const ilsa_material_def *scaled, double V, double s, double w,
@@ -457,14 +505,16 @@ ilsa_status ilsa_tip_triangle(const ilsa_material_def *scaled, double V, double 
         return ILSA_ERR_NULL;
     if (!is_law(scaled) || !is_not_negative(V) || !is_positive(s) || !is_width(scaled, V, w))
         return ILSA_ERR_VALUE;
-    double ratio[3] = {1.0, 0.0, 0.0}, N[3];
-    if (V > 0.0)
+    double N[VERTICES] = {[VERTEX_K] = 1.0};
+    if (V > 0.0) {
+        double ratio[VERTICES];
         vertex_ratios(scaled, V, s, w, ratio);
-    shape_functions(ratio, N);
-    *regime = (ilsa_tip_regime){.N_k = N[0],
-                                .N_mt = N[1],
-                                .N_m = N[2],
-                                .x = N[0] + 0.5 * N[1],
-                                .y = 0.5 * sqrt(3.0) * N[1]};
+        shape_functions(ratio, N);
+    }
+    *regime = (ilsa_tip_regime){.N_k = N[VERTEX_K],
+                                .N_mt = N[VERTEX_MT],
+                                .N_m = N[VERTEX_M],
+                                .x = N[VERTEX_K] + 0.5 * N[VERTEX_MT],
+                                .y = 0.5 * sqrt(3.0) * N[VERTEX_MT]};
     return ILSA_OK;
 }

@@ -6,8 +6,13 @@
 #define ILSAI_GMRES_RESTART 60
 /* GMRES: iterations after which a step is given up. */
 #define ILSAI_GMRES_ITERATIONS 240
-/* GMRES: relative residual of one Newton system; Newton then gains three digits an iteration. */
-#define ILSAI_GMRES_TOLERANCE 1e-3
+/* GMRES: relative residual of one Newton system. The front and the cube of the width change by more
+ * between two systems than a sharper solution would be worth. */
+#define ILSAI_GMRES_TOLERANCE 3e-2
+/* Newton: error left in the widths after a relative change d is about NEWTON_CURVATURE d^2. */
+#define ILSAI_NEWTON_CURVATURE 2.0
+/* Stencil factors are made anew when GMRES takes this many iterations more than with fresh ones. */
+#define ILSAI_STALE_ITERATIONS 3
 /* Unknowns up to which the dense factorisation is the faster one. */
 #define ILSAI_DENSE_UNKNOWNS 100
 /* Part of a width that one Newton step may take away. */
@@ -16,7 +21,12 @@
 #define ILSAI_NEWTON_MAX 25
 
 /* Front: passes before a step is given up, and the memory of the Anderson acceleration. */
-#define ILSAI_FRONT_PASSES_MAX 60
+#define ILSAI_FRONT_PASSES_MAX 40
+/* Front: from this pass on a cell that has been tip or channel in the pass before stays so unless
+ * the front is further than HOLD from filling it, in parts of the full ell: the widths of the two
+ * kinds differ by the tip model's error, and the front would go to and fro between them. */
+#define ILSAI_HOLD_PASS 4
+#define ILSAI_HOLD 0.1
 #define ILSAI_ANDERSON_DEPTH   5
 /* Front: largest advance in one step, in cells; a cell entered and left in a step is still right.
  */
