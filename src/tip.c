@@ -24,7 +24,7 @@
 #define MOMENT_P1 0.260
 
 /* Newton in ln x ends where step^2 times the step before, the error to come, is below this. */
-#define LAST_STEP   1e-12
+#define LAST_STEP   1e-14
 #define NEWTON_MOST 20
 #define ROUNDING    1e-14
 
@@ -73,8 +73,8 @@ static inline double gauss_sum(int pairs, const double *node2, const double *wei
                   (middle2 - theta2 * q);
     }
     double sum = 0.0;
-    for (int j = 0; j < pairs; j++)
-        sum += term[j];
+    for (int j = 0; j < pairs / 2; j++)
+        sum += term[j] + term[j + pairs / 2];
     return kappa * sum;
 }
 
@@ -128,23 +128,24 @@ static tip_bracket bracket(double K, double kappa, double B) {
  * of singularities for d < 3/2; T is its interpolating polynomial on 0 <= d <= 1/2 (error 4e-17).
  */
 static tip_factor factor_C1(double d) {
-    static const double c[11] = {1.0,
-                                 0.2898681336964368,
-                                 0.11827440344686072,
-                                 0.05125534635745701,
-                                 0.022590987654849883,
-                                 0.01001146147298533,
-                                 0.004446133360434121,
-                                 0.0019670205351392306,
-                                 0.0009140707208492647,
-                                 0.0002871593567395032,
-                                 0.0003281727954294107};
-    const double y = d * d;
-    double T = c[10], dT = 0.0;
-    for (int k = 9; k >= 0; k--) {
-        dT = dT * y + T;
-        T = T * y + c[k];
+    static const double even[6] = {1.0,
+                                   0.11827440344686072,
+                                   0.022590987654849883,
+                                   0.004446133360434121,
+                                   0.0009140707208492647,
+                                   0.0003281727954294107};
+    static const double odd[6] = {0.2898681336964368,    0.05125534635745701,   0.01001146147298533,
+                                  0.0019670205351392306, 0.0002871593567395032, 0.0};
+    /* T = E(y^2) + y O(y^2): two short chains of operations instead of a long one. */
+    const double y = d * d, z = y * y;
+    double E = even[5], dE = 0.0, O = odd[5], dO = 0.0;
+    for (int k = 4; k >= 0; k--) {
+        dE = dE * z + E;
+        dO = dO * z + O;
+        E = E * z + even[k];
+        O = O * z + odd[k];
     }
+    const double T = E + y * O, dT = O + 2.0 * y * (dE + y * dO);
     return (tip_factor){4.0 * PI * (1.0 + d) / (1.0 + 2.0 * d) * T,
                         1.0 / (1.0 + d) - 2.0 / (1.0 + 2.0 * d) + 2.0 * d * dT / T};
 }
@@ -184,7 +185,8 @@ static double solve(tip_equation equation, const void *problem, double x, tip_re
         const double step = -last->value / last->slope;
         if (step * step * fabs(before) < LAST_STEP) {
             const double curvature = k > 0 ? (last->slope - slope_before) / before : 0.0;
-            return x * exp(step - 0.5 * curvature / last->slope * step * step);
+            const double corrected = step - 0.5 * curvature / last->slope * step * step;
+            return x + x * (corrected + 0.5 * corrected * corrected);
         }
         if (last->value > 0.0)
             high = x;
@@ -195,7 +197,7 @@ static double solve(tip_equation equation, const void *problem, double x, tip_re
         slope_before = last->slope;
         if (k >= NEWTON_MOST || !(x > low && x < high)) {
             x = sqrt(low) * sqrt(high);
-            before = HUGE_VAL;
+            before = 1.0;
         }
     }
     return high < X_MOST ? (low > X_LEAST ? x : X_LEAST) : X_MOST;
@@ -345,7 +347,7 @@ static double distance_start(const distance_problem *p) {
         const double mt = fmin(2.0 * (m + log(4.0 / 3.0 * B0_PER_C * p->C0)), LOG_MOST);
         inverse += exp(mt) + exp(mt / 6.0);
     }
-    return 1.0 / inverse;
+    return 1.0 / fmax(inverse, 1.0 / X_MOST);
 }
 
 /* K0, C0 and m0 for any arguments; false where K0 >= 1. */

@@ -1,0 +1,383 @@
+# libilsa: `make help` lists the targets, `make info` the configuration.
+
+# ---- Packages -----------------------------------------------------------------------------------
+# What `make deps` installs on Debian 12: enough for demo, check, bench, figures, asan, usan.
+DEPS = gcc libc6-dev make pkg-config libopenblas-dev liblapacke-dev libfftw3-dev libinih-dev \
+       libcmocka-dev gnuplot-nox
+# What `make deps-dev` adds: check-long (clang), tests/install (g++), format and tidy.
+DEPS_DEV = g++ clang clang-format clang-tidy
+
+# ---- Jobs ---------------------------------------------------------------------------------------
+# As many jobs as cores, unless -j was given.
+ifeq ($(MAKELEVEL),0)
+MAKEFLAGS += -j$(shell nproc 2>/dev/null || echo 2)
+endif
+
+# ---- Several goals ------------------------------------------------------------------------------
+# Several goals (`make deps check`, `make clean all`) run one after the other, each in a make of its
+# own: the packages that the first one installs, or the files that it removes, are seen by the next.
+ifneq ($(word 2,$(MAKECMDGOALS)),)
+
+.NOTPARALLEL:
+.PHONY: $(MAKECMDGOALS)
+$(MAKECMDGOALS):
+	@$(MAKE) --no-print-directory $@
+
+else
+
+.DEFAULT_GOAL = all
+.DELETE_ON_ERROR:
+.SECONDARY:
+.SUFFIXES:
+MAKEFLAGS += -r
+
+# ---- Configuration ------------------------------------------------------------------------------
+# Set on the command line: CC, OPT, CFLAGS, LDFLAGS (added last), WERROR= (warnings stay warnings),
+# FFT=fftw|mkl|none, FLAVOUR (see below), PREFIX, LIBDIR, DESTDIR, T (part of a test's name), V=1.
+
+ifeq ($(origin CC),default)
+CC = gcc
+endif
+PKG_CONFIG ?= pkg-config
+GCOV ?= gcov
+
+# Each flavour has its own directory under build/; release alone fills lib/ and build/bin/. Any name
+# makes another tree: `make CC=clang FLAVOUR=clang` leaves the release build alone.
+FLAVOUR = release
+B       = build/$(FLAVOUR)
+BIN     = $(if $(filter release,$(FLAVOUR)),build,$(B))/bin
+LIB     = $(if $(filter release,$(FLAVOUR)),lib,$(B)/lib)
+
+OPT_asan     = -O1 -g
+OPT_usan     = -O1 -g
+OPT_coverage = -O0 -g
+OPT         ?= $(or $(OPT_$(FLAVOUR)),-O3)
+
+INSTRUMENT_asan     = -fsanitize=address -fno-omit-frame-pointer
+INSTRUMENT_usan     = -fsanitize=undefined,float-divide-by-zero -fno-sanitize-recover=all
+INSTRUMENT_coverage = --coverage
+INSTRUMENT          = $(INSTRUMENT_$(FLAVOUR))
+
+# Instrumented code makes gcc's flow analysis warn of paths that do not exist.
+WERROR ?= $(if $(INSTRUMENT),,-Werror)
+
+# -ffp-contract=off: the same bits whether or not -march allows fused multiply-add, and sums that
+# mirror each other stay equal.
+STANDARD = -std=c11 -D_POSIX_C_SOURCE=200809L
+WARNINGS = -Wall -Wextra -Wconversion -Wshadow -Wstrict-prototypes $(WERROR)
+CODEGEN  = -ffp-contract=off -fvisibility=hidden -fPIC -pthread
+
+# Quiet if the package is not there: the rule of the flags file says what is missing.
+pc_exists = $(shell $(PKG_CONFIG) --exists $1 2>/dev/null && echo $1)
+pc_cflags = $(if $1,$(patsubst -I%,-isystem %,$(shell $(PKG_CONFIG) --cflags $1 2>/dev/null)))
+pc_libs   = $(if $1,$(shell $(PKG_CONFIG) --libs $1 2>/dev/null))
+
+# BLAS and LAPACK: OpenBLAS; LAPACKE from its own package where OpenBLAS comes without, as Debian's.
+BLAS_PC     := $(call pc_exists,openblas) $(call pc_exists,lapacke)
+BLAS_CFLAGS := $(call pc_cflags,$(BLAS_PC))
+BLAS_LIBS   := $(call pc_libs,$(BLAS_PC))
+
+# FFT: FFTW3 (GPL), MKL's FFTW3 interface, or none (the elasticity product runs on BLAS).
+ifndef FFT
+FFT := $(if $(call pc_exists,fftw3),fftw,none)
+endif
+ifeq ($(FFT),fftw)
+FFT_SOURCE  = src/fft_fftw.c
+FFT_MISSING := $(if $(call pc_exists,fftw3),,fftw3 not found by $(PKG_CONFIG): make deps)
+FFT_CFLAGS := $(call pc_cflags,fftw3)
+FFT_LIBS    = -lfftw3_threads $(call pc_libs,fftw3)
+else ifeq ($(FFT),mkl)
+# The sequential MKL: no threads of its own.
+FFT_MISSING = $(if $(MKLROOT)$(filter-out file,$(origin MKL_LIBS)),,set MKLROOT)
+MKL_CFLAGS ?= -isystem $(MKLROOT)/include/fftw -isystem $(MKLROOT)/include
+MKL_LIBS   ?= -L$(MKLROOT)/lib -Wl,--push-state,--no-as-needed \
+              -lmkl_intel_lp64 -lmkl_sequential -lmkl_core -Wl,--pop-state
+FFT_SOURCE  = src/fft_fftw.c
+FFT_CFLAGS  = -DILSA_FFT_MKL $(MKL_CFLAGS)
+FFT_LIBS    = $(MKL_LIBS)
+else ifeq ($(FFT),none)
+FFT_SOURCE  = src/fft_none.c
+else
+$(error FFT=$(FFT): fftw, mkl or none)
+endif
+
+# The programs' own needs.
+INIH_PC   := $(call pc_exists,inih)
+CMOCKA_PC := $(call pc_exists,cmocka)
+
+# V=1 prints the commands.
+Q    = $(if $(V),,@)
+say  = $(if $(V),,@printf '  %-4s%s\n' $1 $2)
+
+stop = echo "$1" >&2; exit 1
+
+COMPILE = $(CC) $(STANDARD) $(OPT) $(WARNINGS) $(CODEGEN) $(INSTRUMENT) -Iinclude
+LIBS    = $(BLAS_LIBS) $(FFT_LIBS) -lm
+
+# OpenBLAS on one thread unless the caller says otherwise: tests run side by side, and its sums
+# depend on the number of threads.
+export OPENBLAS_NUM_THREADS ?= 1
+
+PREFIX       ?= /usr/local
+LIBDIR       ?= $(PREFIX)/lib
+INCLUDEDIR   ?= $(PREFIX)/include
+BINDIR       ?= $(PREFIX)/bin
+PKGCONFIGDIR ?= $(LIBDIR)/pkgconfig
+DESTDIR      ?=
+
+# ---- Version ------------------------------------------------------------------------------------
+version = $(shell sed -n 's/^\#define ILSA_VERSION_$1 *//p' include/ilsa/version.h)
+MAJOR   := $(call version,MAJOR)
+VERSION := $(MAJOR).$(call version,MINOR).$(call version,PATCH)
+
+LIB_A  = $(LIB)/libilsa.a
+SONAME = libilsa.so.$(MAJOR)
+LIB_SO = $(LIB)/libilsa.so.$(VERSION)
+LIB_PC = $(LIB)/pkgconfig/ilsa.pc
+
+# ---- Files --------------------------------------------------------------------------------------
+objects = $(patsubst %.c,$(B)/obj/%.o,$1)
+names   = $(patsubst %.c,%,$(notdir $1))
+
+SOURCES  := $(filter-out src/fft_fftw.c src/fft_none.c,$(wildcard src/*.c)) \
+            $(wildcard $(FFT_SOURCE))
+HEADERS  := $(wildcard include/ilsa/*.h)
+EXAMPLES := $(call names,$(wildcard examples/*.c))
+RUN      := $(wildcard examples/ilsa_run/*.c)
+
+# tests/test_*.c are programs, tests/long_*.c programs of `make check-long`, the rest is linked into
+# all of them; bench/common*.c is linked into all of bench/.
+TESTS      := $(call names,$(wildcard tests/test_*.c))
+TESTS_LONG := $(call names,$(wildcard tests/long_*.c))
+TESTS_WITH := $(filter-out tests/test_% tests/long_%,$(wildcard tests/*.c))
+BENCH_WITH := $(wildcard bench/common*.c)
+BENCH      := $(call names,$(filter-out $(BENCH_WITH),$(wildcard bench/*.c)))
+
+# `make accuracy` runs bench/accuracy*.c, nobody bench/long_*.c, `make bench` the others.
+BENCH_ACCURACY := $(filter accuracy%,$(BENCH))
+BENCH_QUICK    := $(filter-out accuracy% long_%,$(BENCH))
+
+PROGRAMS = $(EXAMPLES:%=$(BIN)/%) $(if $(and $(RUN),$(INIH_PC)),$(BIN)/ilsa-run)
+
+# ---- Library ------------------------------------------------------------------------------------
+.PHONY: all lib FORCE
+all: lib $(PROGRAMS) ## the library into lib/, the example programs into build/bin/
+lib: $(LIB_A) ## the library alone
+ifeq ($(FLAVOUR),release)
+lib: $(LIB_SO) $(LIB_PC)
+endif
+
+$(LIB_A): $(call objects,$(SOURCES)) $(B)/flags
+	@mkdir -p $(@D)
+	$(call say,AR,$@)
+	$(Q)rm -f $@ && $(AR) rcs $@ $(filter %.o,$^)
+
+$(LIB_SO): $(call objects,$(SOURCES)) $(B)/flags
+	@mkdir -p $(@D)
+	$(call say,LD,$@)
+	$(Q)$(CC) -shared -Wl,-soname,$(SONAME) -Wl,-z,defs -pthread $(INSTRUMENT) $(CFLAGS) $(LDFLAGS) \
+	    -o $@ $(filter %.o,$^) $(LIBS)
+	@ln -sf $(@F) $(LIB)/$(SONAME) && ln -sf $(SONAME) $(LIB)/libilsa.so
+
+comma = ,
+rpath = -Wl$(comma)-rpath$(comma)$${libdir}
+
+# One template for the tree and for the installed library. In the tree the flags carry the path of
+# the shared library, so that what is linked against it runs. What the static library needs stands
+# in Libs.private itself: through Requires.private, OpenBLAS would bring in -lgfortran.
+pc_file = sed -e 's|@prefix@|$1|' -e 's|@libdir@|$2|' -e 's|@includedir@|$3|' \
+    -e 's|@rpath@|$4|' -e 's|@version@|$(VERSION)|' -e 's|@libs@|$(strip $(LIBS)) -pthread|' \
+    ilsa.pc.in
+
+$(LIB_PC): ilsa.pc.in include/ilsa/version.h $(B)/flags
+	@mkdir -p $(@D)
+	@$(call pc_file,$(CURDIR),$${prefix}/lib,$${prefix}/include,$(rpath) ) >$@
+
+# ---- Objects ------------------------------------------------------------------------------------
+# Holds every flag; a change of compiler, flags or libraries rebuilds the flavour.
+define flags :=
+$(shell $(CC) --version 2>/dev/null | head -n 1)
+$(COMPILE) $(CFLAGS) $(LDFLAGS)
+$(BLAS_CFLAGS) $(FFT_CFLAGS) $(LIBS)
+$(SOURCES)
+$(CURDIR)
+endef
+export flags
+
+$(B)/flags: FORCE
+	@$(if $(filter openblas,$(BLAS_PC)),,$(call stop,openblas not found by $(PKG_CONFIG): make deps))
+	@$(if $(FFT_MISSING),$(call stop,FFT=$(FFT): $(FFT_MISSING)))
+	@mkdir -p $(@D)
+	@printf '%s\n' "$$flags" | cmp -s - $@ || printf '%s\n' "$$flags" >$@
+
+$(B)/obj/src/%:      INCLUDE = $(BLAS_CFLAGS) $(FFT_CFLAGS)
+$(B)/obj/tests/%:    INCLUDE = -Isrc $(call pc_cflags,$(CMOCKA_PC))
+$(B)/obj/bench/%:    INCLUDE = -Isrc $(BLAS_CFLAGS)
+$(B)/obj/examples/%: INCLUDE = $(call pc_cflags,$(INIH_PC))
+
+$(B)/obj/%.o: %.c $(B)/flags
+	@mkdir -p $(@D)
+	$(call say,CC,$<)
+	$(Q)$(COMPILE) $(INCLUDE) -MMD -MP $(CFLAGS) -c -o $@ $<
+
+-include $(wildcard $(B)/obj/*/*.d $(B)/obj/*/*/*.d)
+
+# ---- Programs -----------------------------------------------------------------------------------
+# Linked with the static library: they run from anywhere, and the tests reach what it hides.
+define link
+@mkdir -p $(@D)
+$(call say,LD,$@)
+$(Q)$(CC) -pthread $(INSTRUMENT) $(CFLAGS) $(LDFLAGS) -o $@ $(filter %.o,$^) $(LIB_A) $1 $(LIBS)
+endef
+
+$(EXAMPLES:%=$(BIN)/%): $(BIN)/%: $(B)/obj/examples/%.o $(LIB_A)
+	$(call link)
+
+$(BIN)/ilsa-run: $(call objects,$(RUN)) $(LIB_A)
+	@$(if $(INIH_PC),,$(call stop,inih not found by $(PKG_CONFIG): make deps))
+	$(call link,$(call pc_libs,$(INIH_PC)))
+
+BENCH_PROGRAMS = $(BENCH:%=$(BIN)/bench_%)
+$(BENCH_PROGRAMS): $(BIN)/bench_%: $(B)/obj/bench/%.o $(call objects,$(BENCH_WITH)) $(LIB_A)
+	$(call link)
+
+TEST_PROGRAMS = $(TESTS:%=$(BIN)/%) $(TESTS_LONG:%=$(BIN)/%)
+$(TEST_PROGRAMS): $(BIN)/%: $(B)/obj/tests/%.o $(call objects,$(TESTS_WITH)) $(LIB_A)
+	$(call link,$(call pc_libs,$(CMOCKA_PC)))
+
+# ---- Tests --------------------------------------------------------------------------------------
+.PHONY: check check-long asan usan coverage
+T           =
+CANDIDATES := $(TESTS) $(if $(ILSA_LONG),$(TESTS_LONG))
+CHECKED    := $(if $(T),$(foreach t,$(CANDIDATES),$(if $(findstring $(T),$(t)),$(t))),$(CANDIDATES))
+TEST_TIMEOUT = 3600
+
+# Tests find the programs of their own flavour in $ILSA_BIN.
+TEST_ENV = ILSA_BIN=$(BIN) \
+    ASAN_OPTIONS=detect_leaks=1:detect_stack_use_after_return=1:strict_string_checks=1 \
+    UBSAN_OPTIONS=print_stacktrace=1
+
+check: $(CHECKED:%=check/%) ## the tests; T=name for those whose name contains it
+	@sh tests/report.sh $(B)/log $(CHECKED)
+
+# Every program writes its log; they run side by side and are reported in order.
+.PHONY: $(CHECKED:%=check/%)
+$(CHECKED:%=check/%): check/%: $(BIN)/% $(PROGRAMS)
+	@mkdir -p $(B)/log
+	@start=$$(date +%s); $(TEST_ENV) timeout --foreground $(TEST_TIMEOUT) $< >$(B)/log/$*.log 2>&1; \
+	echo $$? $$(($$(date +%s) - start)) >$(B)/log/$*.status; \
+	echo "ran $<"
+
+check-long: ## every test at full length, then the build and the tests with clang
+	@$(MAKE) --no-print-directory check ILSA_LONG=1
+	@$(MAKE) --no-print-directory FLAVOUR=clang CC=clang all check
+
+asan: ## the tests under AddressSanitizer and LeakSanitizer
+	@$(MAKE) --no-print-directory FLAVOUR=asan check
+
+usan: ## the tests under UndefinedBehaviorSanitizer, division by zero included
+	@$(MAKE) --no-print-directory FLAVOUR=usan check
+
+coverage: ## the lines and branches of src/ that the tests reach
+	@rm -f build/coverage/obj/src/*.gcda
+	@$(MAKE) --no-print-directory FLAVOUR=coverage CC=gcc check
+	@for f in $(SOURCES); do $(GCOV) -b -n -o build/coverage/obj/$${f%.c}.o $$f; done 2>/dev/null \
+	    | awk -f tests/coverage.awk
+
+# ---- Programs that measure and draw -------------------------------------------------------------
+.PHONY: bench accuracy demo figures
+bench: $(BENCH_PROGRAMS) ## the quick programs of bench/
+	@set -e; for b in $(BENCH_QUICK); do echo "== bench_$$b"; $(BIN)/bench_$$b; done
+
+accuracy: $(BENCH_ACCURACY:%=$(BIN)/bench_%) ## the tables of bench/accuracy*.c
+	@set -e; for b in $(BENCH_ACCURACY); do echo "== bench_$$b"; $(BIN)/bench_$$b; done
+
+DEMO = symmetric_phi1e-2
+demo: $(BIN)/ilsa-run ## the paper's three-layer fracture to 3600 s, and its figures, in out/demo
+	$(BIN)/ilsa-run examples/scenes/$(DEMO).ini --out out/demo
+	examples/figures.sh out/demo
+
+figures: ## the figures of every scene that was run into out/
+	@set -e; for h in $(wildcard out/*/history.csv); do examples/figures.sh $${h%/history.csv}; done
+
+# ---- Install ------------------------------------------------------------------------------------
+.PHONY: install uninstall
+INSTALLED = $(HEADERS:include/ilsa/%=$(INCLUDEDIR)/ilsa/%) \
+    $(addprefix $(LIBDIR)/,libilsa.a libilsa.so $(SONAME) libilsa.so.$(VERSION)) \
+    $(PKGCONFIGDIR)/ilsa.pc $(BINDIR)/ilsa-run
+
+install: lib $(filter %/ilsa-run,$(PROGRAMS)) ## headers, libraries, ilsa.pc, ilsa-run in PREFIX
+	install -d "$(DESTDIR)$(INCLUDEDIR)/ilsa" "$(DESTDIR)$(LIBDIR)" "$(DESTDIR)$(PKGCONFIGDIR)"
+	install -m 644 $(HEADERS) "$(DESTDIR)$(INCLUDEDIR)/ilsa"
+	install -m 644 $(LIB_A) "$(DESTDIR)$(LIBDIR)"
+	install -m 755 $(LIB_SO) "$(DESTDIR)$(LIBDIR)"
+	ln -sf libilsa.so.$(VERSION) "$(DESTDIR)$(LIBDIR)/$(SONAME)"
+	ln -sf $(SONAME) "$(DESTDIR)$(LIBDIR)/libilsa.so"
+	$(call pc_file,$(PREFIX),$(LIBDIR:$(PREFIX)%=$${prefix}%),$(INCLUDEDIR:$(PREFIX)%=$${prefix}%),) \
+	    >"$(DESTDIR)$(PKGCONFIGDIR)/ilsa.pc"
+ifneq ($(filter %/ilsa-run,$(PROGRAMS)),)
+	install -d "$(DESTDIR)$(BINDIR)"
+	install -m 755 $(BIN)/ilsa-run "$(DESTDIR)$(BINDIR)"
+endif
+	@if [ -z "$(DESTDIR)" ] && [ "$$(id -u)" = 0 ]; then ldconfig || :; fi
+
+uninstall: ## removes what install put there
+	rm -f $(patsubst %,"$(DESTDIR)%",$(INSTALLED))
+	@rmdir "$(DESTDIR)$(INCLUDEDIR)/ilsa" 2>/dev/null || :
+
+# ---- Packages -----------------------------------------------------------------------------------
+.PHONY: deps deps-dev
+deps: ## installs the Debian packages of DEPS, if any is missing
+	@$(call install_missing,$(DEPS))
+deps-dev: ## those and the ones of DEPS_DEV
+	@$(call install_missing,$(DEPS) $(DEPS_DEV))
+
+define install_missing
+missing=; \
+for p in $1; do \
+    dpkg-query -W -f '$${db:Status-Status}\n' $$p 2>/dev/null | grep -qx installed \
+        || missing="$$missing $$p"; \
+done; \
+[ -z "$$missing" ] && exit 0; \
+command -v apt-get >/dev/null || { $(call stop,no apt-get here; install the like of$$missing); }; \
+echo "installing$$missing"; \
+root=; [ "$$(id -u)" = 0 ] || root=sudo; \
+$$root env DEBIAN_FRONTEND=noninteractive apt-get update -q && \
+$$root env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends $$missing
+endef
+
+# ---- Source care --------------------------------------------------------------------------------
+.PHONY: format format-check tidy
+C_FILES  = $(shell find include src tests bench examples -name '*.[ch]' -o -name '*.cpp')
+TIDY     = $(SOURCES) $(RUN) $(wildcard examples/*.c bench/*.c tests/*.c)
+
+format: ## clang-format over all sources, in place
+	clang-format -i $(C_FILES)
+
+format-check: ## fails where clang-format would change something
+	clang-format --dry-run -Werror $(C_FILES)
+
+tidy: $(TIDY:%=tidy/%) ## clang-tidy over all sources
+.PHONY: $(TIDY:%=tidy/%)
+$(TIDY:%=tidy/%): tidy/%:
+	clang-tidy --quiet $* -- $(STANDARD) -Iinclude -Isrc $(BLAS_CFLAGS) $(FFT_CFLAGS)
+
+# ---- The rest -----------------------------------------------------------------------------------
+.PHONY: info clean help
+info: ## prints the configuration
+	@printf '%-10s %s\n' version '$(VERSION)' flavour '$(FLAVOUR) ($(B), $(BIN), $(LIB))' \
+	    compiler "$$($(CC) --version | head -n 1)" compile '$(COMPILE) $(CFLAGS)' \
+	    blas '$(BLAS_PC): $(BLAS_LIBS)' fft '$(FFT): $(or $(FFT_LIBS),the product runs on BLAS)' \
+	    ilsa-run '$(if $(INIH_PC),inih,not built: inih not found)' \
+	    tests '$(if $(CMOCKA_PC),cmocka,cannot be built: cmocka not found)' \
+	    prefix '$(DESTDIR)$(PREFIX)' sources '$(SOURCES)' programs '$(notdir $(PROGRAMS))' \
+	    checks '$(TESTS) $(TESTS_LONG)' bench '$(BENCH)'
+
+clean: ## removes build/ and lib/
+	rm -rf build lib
+
+help: ## lists the targets
+	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/\1|\2/p' Makefile | \
+	    awk -F'|' '{ printf "  %-14s%s\n", $$1, $$2 }'
+
+endif
