@@ -1,0 +1,150 @@
+#include "run.h"
+
+#include "history.h"
+#include "model.h"
+#include "outputs.h"
+#include "progress.h"
+#include "summary.h"
+
+#include <math.h>
+#include <signal.h>
+#include <string.h>
+#include <time.h>
+
+static volatile sig_atomic_t caught;
+
+static void catch_signal(int number) {
+    caught = number;
+}
+
+/* A second signal ends the program at once. A full file must be an error, not a signal. */
+static void catch_signals(void) {
+    struct sigaction action;
+    memset(&action, 0, sizeof action);
+    action.sa_handler = catch_signal;
+    action.sa_flags = (int)SA_RESETHAND;
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+    signal(SIGXFSZ, SIG_IGN);
+}
+
+typedef struct run {
+    const scene *sc;
+    const char *directory;
+    ilsa_solver *solver;
+    outfile history;
+    outputs out;
+    progress bar;
+    struct timespec began;
+    double t;
+    long steps;
+    int next_output;    /* of the scene's output times */
+    int unsaved;        /* steps since the last output */
+    int writing_failed; /* stderr has said so */
+} run;
+
+static double wall_seconds(const run *r) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)(now.tv_sec - r->began.tv_sec) + 1e-9 * (double)(now.tv_nsec - r->began.tv_nsec);
+}
+
+/* Up to where the next step may go. */
+static double step_limit(const run *r) {
+    const scene *sc = r->sc;
+    double limit = fmin(sc->t_end, scene_next_change(sc, r->t));
+    if (r->next_output < sc->output_count)
+        limit = fmin(limit, sc->output_times[r->next_output]);
+    if (r->steps == 0 && sc->dt_initial > 0)
+        limit = fmin(limit, r->t + sc->dt_initial);
+    return limit;
+}
+
+static void save(run *r) {
+    progress_end(&r->bar);
+    if (!outputs_write(&r->out, r->directory, r->sc, r->solver))
+        r->writing_failed = 1;
+    r->unsaved = 0;
+}
+
+static ilsa_status take_step(run *r) {
+    ilsa_report report;
+    ilsa_summary now;
+    ilsa_status status = ilsa_advance_one(r->solver, step_limit(r), &report);
+    if (!status)
+        status = ilsa_get_summary(r->solver, &now);
+    if (status)
+        return status;
+    r->t = now.time;
+    r->steps++;
+    r->unsaved = 1;
+    if (!history_row(&r->history, &now, &report, wall_seconds(r)))
+        r->writing_failed = 1;
+    progress_show(&r->bar, r->t, r->steps, wall_seconds(r));
+    if (r->next_output < r->sc->output_count && r->t >= r->sc->output_times[r->next_output]) {
+        r->next_output++;
+        save(r);
+    }
+    return model_set_rates(r->sc, r->solver, r->t);
+}
+
+/* Says how the run ended, into text and, unless all is well and quiet, on the terminal. */
+static int conclude(const run *r, ilsa_status status, int quiet, char *text, size_t size) {
+    progress_end(&r->bar);
+    if (r->writing_failed)
+        snprintf(text, size, "failed at t = %.10g: a result file could not be written", r->t);
+    else if (status)
+        snprintf(text, size, "failed at t = %.10g of %.10g: %s: %s%s", r->t, r->sc->t_end,
+                 ilsa_status_text(status), ilsa_last_error(r->solver),
+                 status == ILSA_MESH_EDGE ? "; give [mesh] more cells, or [run] coarsen = yes"
+                                          : "");
+    else if (r->t < r->sc->t_end)
+        snprintf(text, size, "stopped by %s at t = %.10g of %.10g",
+                 caught == SIGINT ? "Ctrl-C" : "SIGTERM", r->t, r->sc->t_end);
+    else
+        snprintf(text, size, "done");
+    if (r->writing_failed || status || r->t < r->sc->t_end)
+        fprintf(stderr, "ilsa-run: %s; what was reached is in %s\n", text, r->directory);
+    else if (!quiet)
+        printf("t = %.10g in %ld steps and %.1f s; results in %s\n", r->t, r->steps,
+               wall_seconds(r), r->directory);
+    if (r->writing_failed || status)
+        return EXIT_RUN_FAILED;
+    return r->t < r->sc->t_end ? 128 + caught : EXIT_DONE;
+}
+
+static int run_steps(run *r, int quiet) {
+    char ended[1200];
+    ilsa_status status = ILSA_OK;
+    while (!status && !caught && !r->writing_failed && r->t < r->sc->t_end)
+        status = take_step(r);
+    if (r->unsaved && (status || caught || r->writing_failed))
+        save(r);
+    if (r->history.stream && !outfile_close(&r->history))
+        r->writing_failed = 1;
+    int exit_status = conclude(r, status, quiet, ended, sizeof ended);
+    if (!summary_write(r->directory, r->sc, r->solver, ended, wall_seconds(r)))
+        exit_status = EXIT_RUN_FAILED;
+    return exit_status;
+}
+
+int run_scene(const scene *sc, const char *directory, int quiet) {
+    run r = {.sc = sc, .directory = directory};
+    int exit_status;
+    clock_gettime(CLOCK_MONOTONIC, &r.began);
+    exit_status = model_start(sc, &r.solver);
+    if (exit_status)
+        return exit_status;
+    catch_signals();
+    ilsa_get_time(r.solver, &r.t);
+    r.bar = progress_begin(quiet, r.t, sc->t_end);
+    if (directory_make(directory)) {
+        directory_clear(directory);
+        exit_status = history_open(&r.history, directory) ? run_steps(&r, quiet) : EXIT_RUN_FAILED;
+    } else {
+        exit_status = EXIT_RUN_FAILED;
+    }
+    outputs_free(&r.out);
+    ilsa_solver_destroy(&r.solver);
+    return exit_status;
+}

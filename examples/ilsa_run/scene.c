@@ -1,0 +1,328 @@
+#include "scene.h"
+
+#include "draft.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static double number_or(const section *s, int key, double otherwise) {
+    return draft_has(s, key) ? s->values[key].number : otherwise;
+}
+
+/* Moves the numbers of a list out of the draft. */
+static double *take_numbers(section *s, int key, int *count) {
+    double *numbers = s->values[key].numbers;
+    *count = s->values[key].count;
+    s->values[key].numbers = NULL;
+    return numbers;
+}
+
+/* Exactly one of two keys; 1 when so. */
+static int require_one(draft *d, const section *s, int a, int b) {
+    const key_def *keys = s->def->keys;
+    if (draft_has(s, a) != draft_has(s, b))
+        return 1;
+    if (draft_has(s, a)) {
+        int later = s->values[a].line > s->values[b].line ? a : b, first = a + b - later;
+        draft_error(d, s->values[later].line, s->name, keys[later].name, s->values[later].text,
+                    "%s is given too, on line %d; must be either %s or %s", keys[first].name,
+                    s->values[first].line, keys[a].name, keys[b].name);
+        return 0;
+    }
+    char range_a[160], range_b[160];
+    key_range(&keys[a], range_a, sizeof range_a);
+    key_range(&keys[b], range_b, sizeof range_b);
+    draft_error(d, s->line, s->name, NULL, NULL, "missing; must have %s (%s) or %s (%s)",
+                keys[a].name, range_a, keys[b].name, range_b);
+    return 0;
+}
+
+static void check_material(draft *d, const section *s) {
+    require_one(d, s, MATERIAL_E, MATERIAL_E_PRIME);
+    require_one(d, s, MATERIAL_MU, MATERIAL_MU_PRIME);
+    require_one(d, s, MATERIAL_K_IC, MATERIAL_K_PRIME);
+    require_one(d, s, MATERIAL_C_L, MATERIAL_C_PRIME);
+    if (draft_has(s, MATERIAL_E))
+        draft_require(d, s, MATERIAL_NU);
+    else if (draft_has(s, MATERIAL_NU) && draft_has(s, MATERIAL_E_PRIME))
+        draft_error(d, s->values[MATERIAL_NU].line, s->name, "nu", s->values[MATERIAL_NU].text,
+                    "must be given with E only; E_prime contains it");
+}
+
+static void take_material(scene *sc, const section *s) {
+    ilsa_rock rock = {.E = number_or(s, MATERIAL_E, 1),
+                      .nu = number_or(s, MATERIAL_NU, 0),
+                      .mu = number_or(s, MATERIAL_MU, 1),
+                      .K_Ic = number_or(s, MATERIAL_K_IC, 0),
+                      .C_L = number_or(s, MATERIAL_C_L, 0)};
+    ilsa_material_def *m = &sc->material;
+    ilsa_material_def_from_rock(&rock, m);
+    m->E_prime = number_or(s, MATERIAL_E_PRIME, m->E_prime);
+    m->mu_prime = number_or(s, MATERIAL_MU_PRIME, m->mu_prime);
+    m->K_prime = number_or(s, MATERIAL_K_PRIME, m->K_prime);
+    m->C_prime = number_or(s, MATERIAL_C_PRIME, m->C_prime);
+    sc->laboratory = draft_has(s, MATERIAL_E);
+}
+
+static void check_mesh(draft *d, const section *s) {
+    int complete =
+        draft_require(d, s, MESH_NX) & draft_require(d, s, MESH_NY) & draft_require(d, s, MESH_DX);
+    if (!complete || d->error_count)
+        return;
+    double dx = s->values[MESH_DX].number, dy = number_or(s, MESH_DY, dx);
+    if (dy < 1e-3 * dx || dy > 1e3 * dx)
+        draft_range_error(d, s, MESH_DY, "in %.10g .. %.10g, dx / 1000 .. 1000 dx", 1e-3 * dx,
+                          1e3 * dx);
+    double most = 268435456.0, nx = s->values[MESH_NX].number;
+    if (nx * s->values[MESH_NY].number > most)
+        draft_range_error(d, s, MESH_NY, "in 3 .. %.0f with this nx: 2^28 cells in all",
+                          fmin(1e6, floor(most / nx)));
+}
+
+static void take_mesh(scene *sc, const section *s) {
+    static const ilsa_symmetry symmetries[] = {ILSA_SYMMETRY_AUTO, ILSA_SYMMETRY_NONE,
+                                               ILSA_SYMMETRY_X, ILSA_SYMMETRY_Y, ILSA_SYMMETRY_XY};
+    sc->mesh = ilsa_mesh_def_default();
+    sc->mesh.nx = (int)s->values[MESH_NX].number;
+    sc->mesh.ny = (int)s->values[MESH_NY].number;
+    sc->mesh.dx = s->values[MESH_DX].number;
+    sc->mesh.dy = number_or(s, MESH_DY, sc->mesh.dx);
+    sc->symmetry = symmetries[(int)number_or(s, MESH_SYMMETRY, 0)];
+    sc->symmetry_line = s->values[MESH_SYMMETRY].line;
+}
+
+static int rises(const key_value *list) {
+    for (int i = 1; i < list->count; i++)
+        if (list->numbers[i] <= list->numbers[i - 1])
+            return 0;
+    return 1;
+}
+
+static void check_stress(draft *d, const section *s) {
+    const key_value *interfaces = &s->values[STRESS_INTERFACES];
+    if (!draft_require(d, s, STRESS_SIGMA) || d->error_count)
+        return;
+    if (!rises(interfaces))
+        draft_range_error(d, s, STRESS_INTERFACES, "rising, from the bottom interface up");
+    if (s->values[STRESS_SIGMA].count == interfaces->count + 1)
+        return;
+    if (interfaces->count)
+        draft_range_error(d, s, STRESS_SIGMA, "%d values, one more than interfaces",
+                          interfaces->count + 1);
+    else
+        draft_range_error(d, s, STRESS_SIGMA, "one value, or interfaces must be given");
+}
+
+static void take_stress(scene *sc, section *s) {
+    int layers;
+    sc->sigma = take_numbers(s, STRESS_SIGMA, &layers);
+    sc->interfaces = take_numbers(s, STRESS_INTERFACES, &sc->interface_count);
+}
+
+static void check_place(draft *d, const section *s, int key, double half) {
+    if (fabs(number_or(s, key, 0)) >= half)
+        draft_range_error(d, s, key, "inside the mesh, in %.10g .. %.10g", -half, half);
+}
+
+static void check_injection(draft *d, const section *s, const section *mesh) {
+    require_one(d, s, INJECTION_RATE, INJECTION_SCHEDULE);
+    if (d->error_count)
+        return;
+    double dx = mesh->values[MESH_DX].number;
+    const key_value *rate = &s->values[INJECTION_RATE], *schedule = &s->values[INJECTION_SCHEDULE];
+    double first = rate->line ? rate->number : schedule->numbers[1];
+    if (strcmp(s->name, "injection") == 0 && first == 0)
+        draft_range_error(d, s, rate->line ? INJECTION_RATE : INJECTION_SCHEDULE,
+                          "> 0 at first: this source made the initial fracture");
+    check_place(d, s, INJECTION_X, 0.5 * mesh->values[MESH_NX].number * dx);
+    check_place(d, s, INJECTION_Y,
+                0.5 * mesh->values[MESH_NY].number * number_or(mesh, MESH_DY, dx));
+}
+
+/* The section of source i = 0, 1, ..., or NULL. */
+static section *injection(const draft *d, int i) {
+    char name[32] = "injection";
+    if (i > 0)
+        snprintf(name, sizeof name, "injection.%d", i + 1);
+    return draft_section(d, name);
+}
+
+static int take_source(scene_source *source, const section *s) {
+    int scheduled = draft_has(s, INJECTION_SCHEDULE);
+    const key_value *value = &s->values[scheduled ? INJECTION_SCHEDULE : INJECTION_RATE];
+    source->x = number_or(s, INJECTION_X, 0);
+    source->y = number_or(s, INJECTION_Y, 0);
+    source->line = value->line;
+    source->count = scheduled ? value->count : 1;
+    source->times = calloc((size_t)source->count, sizeof(double));
+    source->rates = calloc((size_t)source->count, sizeof(double));
+    if (!source->times || !source->rates)
+        return 0;
+    source->rates[0] = value->number;
+    const double *pair = value->numbers;
+    for (int i = 0; i < source->count && scheduled; i++, pair += 2) {
+        source->times[i] = pair[0];
+        source->rates[i] = pair[1];
+    }
+    return 1;
+}
+
+static void take_sources(draft *d, scene *sc) {
+    int count = 1; /* [injection] is there */
+    while (injection(d, count))
+        count++;
+    sc->sources = calloc((size_t)count, sizeof *sc->sources);
+    if (!sc->sources) {
+        draft_error(d, 0, NULL, NULL, NULL, "out of memory");
+        return;
+    }
+    sc->source_count = count;
+    for (int i = 0; i < count; i++)
+        if (!take_source(&sc->sources[i], injection(d, i)))
+            draft_error(d, 0, NULL, NULL, NULL, "out of memory");
+}
+
+static void check_injections(draft *d, const section *mesh) {
+    int count = 0;
+    while (injection(d, count))
+        check_injection(d, injection(d, count++), mesh);
+    for (int i = 0; i < d->count; i++) {
+        const section *s = &d->sections[i];
+        if (s->number > count)
+            draft_error(d, s->line, s->name, NULL, NULL,
+                        "the sources must be numbered without a gap; injection.%d is missing",
+                        count + 1);
+    }
+}
+
+/* The library needs 2 cells; the rim must be inside the mesh. */
+static void check_initial(draft *d, const section *s, const scene *sc) {
+    if (!require_one(d, s, INITIAL_RADIUS, INITIAL_TIME) || d->error_count ||
+        !draft_has(s, INITIAL_RADIUS))
+        return;
+    const ilsa_mesh_def *m = &sc->mesh;
+    double least = 2 * fmax(m->dx, m->dy);
+    double most = fmin(0.5 * (m->nx - 2) * m->dx - fabs(sc->sources[0].x),
+                       0.5 * (m->ny - 2) * m->dy - fabs(sc->sources[0].y));
+    double radius = s->values[INITIAL_RADIUS].number;
+    if (radius < least || radius > most)
+        draft_range_error(d, s, INITIAL_RADIUS,
+                          "in %.10g .. %.10g: 2 cells or more, and inside the mesh", least, most);
+}
+
+static void check_run(draft *d, const section *s) {
+    const key_value *times = &s->values[RUN_OUTPUT_TIMES];
+    if (!draft_require(d, s, RUN_T_END) || d->error_count)
+        return;
+    double t_end = s->values[RUN_T_END].number;
+    if (!rises(times) || (times->count && times->numbers[times->count - 1] > t_end))
+        draft_range_error(d, s, RUN_OUTPUT_TIMES, "rising, and at most t_end = %.10g", t_end);
+}
+
+static void take_run(draft *d, scene *sc, section *s) {
+    sc->t_end = s->values[RUN_T_END].number;
+    sc->t_end_line = s->values[RUN_T_END].line;
+    sc->dt_initial = number_or(s, RUN_DT_INITIAL, 0);
+    sc->dt_max = number_or(s, RUN_DT_MAX, 0);
+    sc->level = (int)number_or(s, RUN_LEVEL, 3);
+    sc->coarsen = (int)number_or(s, RUN_COARSEN, 0);
+    sc->output_line = s->values[RUN_OUTPUT_TIMES].line;
+    sc->output_times = take_numbers(s, RUN_OUTPUT_TIMES, &sc->output_count);
+    if (sc->output_times)
+        return;
+    sc->output_times = malloc(sizeof *sc->output_times);
+    if (!sc->output_times) {
+        draft_error(d, 0, NULL, NULL, NULL, "out of memory");
+        return;
+    }
+    sc->output_times[0] = sc->t_end;
+    sc->output_count = 1;
+}
+
+/* Checks that look at several keys come after those of single values, whose errors they'd repeat.
+ */
+static void build(draft *d, scene *sc) {
+    section *s[SECTION_COUNT];
+    for (int i = 0; i < SECTION_COUNT; i++) {
+        s[i] = draft_section(d, sections[i].name);
+        if (!s[i])
+            draft_error(d, d->file.lines, sections[i].name, NULL, NULL, "missing section");
+    }
+    if (d->error_count)
+        return;
+    check_material(d, s[SECTION_MATERIAL]);
+    check_mesh(d, s[SECTION_MESH]);
+    check_stress(d, s[SECTION_STRESS]);
+    check_injections(d, s[SECTION_MESH]);
+    check_run(d, s[SECTION_RUN]);
+    if (!d->error_count) {
+        take_material(sc, s[SECTION_MATERIAL]);
+        take_mesh(sc, s[SECTION_MESH]);
+        take_stress(sc, s[SECTION_STRESS]);
+        take_sources(d, sc);
+        take_run(d, sc, s[SECTION_RUN]);
+    }
+    check_initial(d, s[SECTION_INITIAL], sc);
+    sc->radius = number_or(s[SECTION_INITIAL], INITIAL_RADIUS, 0);
+    sc->time = number_or(s[SECTION_INITIAL], INITIAL_TIME, 0);
+    sc->initial_line =
+        s[SECTION_INITIAL]->values[sc->radius > 0 ? INITIAL_RADIUS : INITIAL_TIME].line;
+}
+
+int scene_read(const char *path, scene *sc, FILE *errors) {
+    draft d;
+    memset(sc, 0, sizeof *sc);
+    sc->path = path;
+    draft_read(&d, path, errors);
+    if (!d.error_count)
+        build(&d, sc);
+    int good = d.error_count == 0;
+    draft_free(&d);
+    if (!good)
+        scene_free(sc);
+    return good;
+}
+
+int scene_check_start(const scene *sc, double t_start, FILE *errors) {
+    draft d = {.path = sc->path, .errors = errors};
+    const scene_source *first = &sc->sources[0];
+    const char *after = "must be after the initial fracture's own time";
+    if (sc->t_end <= t_start)
+        draft_error(&d, sc->t_end_line, "run", "t_end", NULL, "%s, > %.10g", after, t_start);
+    else if (sc->output_times[0] <= t_start)
+        draft_error(&d, sc->output_line, "run", "output_times", NULL, "%s, > %.10g", after,
+                    t_start);
+    if (first->count > 1 && first->times[1] <= t_start)
+        draft_error(&d, first->line, "injection", "schedule", NULL, "the second t %s, > %.10g",
+                    after, t_start);
+    return d.error_count == 0;
+}
+
+void scene_free(scene *sc) {
+    for (int i = 0; i < sc->source_count; i++) {
+        free(sc->sources[i].times);
+        free(sc->sources[i].rates);
+    }
+    free(sc->sources);
+    free(sc->interfaces);
+    free(sc->sigma);
+    free(sc->output_times);
+    memset(sc, 0, sizeof *sc);
+}
+
+double scene_rate(const scene_source *source, double t) {
+    int i = 0;
+    while (i + 1 < source->count && source->times[i + 1] <= t)
+        i++;
+    return source->rates[i];
+}
+
+double scene_next_change(const scene *sc, double t) {
+    double next = INFINITY;
+    for (int i = 0; i < sc->source_count; i++)
+        for (int k = 0; k < sc->sources[i].count; k++)
+            if (sc->sources[i].times[k] > t)
+                next = fmin(next, sc->sources[i].times[k]);
+    return next;
+}
