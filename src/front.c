@@ -6,7 +6,7 @@
 
 /* A cell's value as seen by its neighbours while the march goes on. */
 typedef struct node {
-    double T, V, K_num, K_den;
+    double T, V, K_num, K_den, curvature;
     double cos_a, sin_a;
     int cell;
     int place; /* in the heap, -1 when accepted */
@@ -160,36 +160,62 @@ static void one_sided(node *n, const node *from, double h, int along_x) {
     n->V = from->V;
     n->K_num = from->K_num;
     n->K_den = from->K_den;
+    n->curvature = from->curvature;
     n->cos_a = along_x ? 1 : 0;
     n->sin_a = along_x ? 0 : 1;
 }
 
 /*
- * The plane through two neighbours with unit slope, (4.12). The velocity is the derivative of
- * that T, so the neighbours weigh by the slopes cos a / dx and sin a / dy. Returns 0 where the
- * plane does not come from between them.
+ * The level of unit slope through two neighbours' levels a and b, (4.12), and its normal. Returns
+ * 0 where the front does not come from between them.
  */
-static int two_sided(node *n, const node *a, const node *b, double dx, double dy) {
-    double diagonal = sqrt(dx * dx + dy * dy);
-    double difference = (b->T - a->T) / diagonal;
+static int plane(node *n, double a, double b, double dx, double dy) {
+    double diagonal = sqrt(dx * dx + dy * dy), difference = (b - a) / diagonal;
     double root = 1 - difference * difference;
     if (root < 0) {
         return 0;
     }
-    double theta = dx * dy * sqrt(root) / diagonal;
     double wx = dy * dy / (diagonal * diagonal), wy = dx * dx / (diagonal * diagonal);
-    double T = wx * a->T + wy * b->T + theta;
-    double cos_a = (T - a->T) / dx, sin_a = (T - b->T) / dy;
-    if (cos_a <= 0 || sin_a <= 0) {
+    n->T = wx * a + wy * b + dx * dy * sqrt(root) / diagonal;
+    n->cos_a = (n->T - a) / dx;
+    n->sin_a = (n->T - b) / dy;
+    return n->cos_a > 0 && n->sin_a > 0;
+}
+
+/*
+ * The same for a level that curves with the front: its second derivatives along the axes are
+ * kappa sin^2 a and kappa cos^2 a, kappa the curvature where the cell is. The neighbours' levels
+ * less half of these times dx^2 and dy^2 lie on the tangent plane of the cell.
+ */
+static void bend(node *n, const node *a, const node *b, double dx, double dy) {
+    double kappa = n->curvature / fmax(1 + n->curvature * n->T, 0.5);
+    for (int k = 0; k < 2; k++) {
+        node bent = *n;
+        double x = 0.5 * dx * dx * kappa * n->sin_a * n->sin_a;
+        double y = 0.5 * dy * dy * kappa * n->cos_a * n->cos_a;
+        if (!plane(&bent, a->T - x, b->T - y, dx, dy) || bent.T < fmax(a->T, b->T)) {
+            return;
+        }
+        *n = bent;
+    }
+}
+
+/*
+ * The march from two neighbours. The velocity is the derivative of (4.12), so the neighbours weigh
+ * by cos a / dx and sin a / dy.
+ */
+static int two_sided(node *n, const node *a, const node *b, double dx, double dy) {
+    if (!plane(n, a->T, b->T, dx, dy)) {
         return 0;
     }
-    double slope = cos_a / dx + sin_a / dy;
-    n->T = T;
-    n->cos_a = cos_a;
-    n->sin_a = sin_a;
-    n->V = (cos_a / dx * a->V + sin_a / dy * b->V) / slope;
+    double wa = n->cos_a / dx, wb = n->sin_a / dy, slope = wa + wb;
+    n->V = (wa * a->V + wb * b->V) / slope;
     n->K_num = a->K_num + b->K_num;
     n->K_den = a->K_den + b->K_den;
+    n->curvature = (wa * a->curvature + wb * b->curvature) / slope;
+    if (n->curvature != 0) {
+        bend(n, a, b, dx, dy);
+    }
     return 1;
 }
 
@@ -215,7 +241,9 @@ static ilsa_status add_seed(front *f, const grid *g, const front_seed *seed) {
     if (reserve_nodes(f, f->node_count + 1) != ILSA_OK) {
         return ILSA_ERR_MEMORY;
     }
-    node n = {-seed->s, seed->V, seed->w * sqrt(seed->s), seed->s, 0, 0, seed->cell, -1};
+    node n = {.T = -seed->s, .V = seed->V, .K_den = seed->s, .cell = seed->cell, .place = -1};
+    n.K_num = seed->w * sqrt(seed->s);
+    n.curvature = seed->curvature;
     *slot = f->node_count;
     f->nodes[f->node_count++] = n;
     return ILSA_OK;

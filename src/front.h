@@ -11,11 +11,14 @@
 /* A survey cell: where the marching starts. */
 typedef struct front_seed {
     int cell;
-    double s0; /* distance to the front at the start of the step */
-    double h;  /* cell size along the normal */
-    double s;  /* distance now */
-    double V;  /* (s - s0) / dt */
-    double w;  /* width that s and V answer to */
+    double s0;    /* distance to the front at the start of the step */
+    double h;     /* cell size along the normal */
+    double s;     /* distance now */
+    double V;     /* (s - s0) / dt */
+    double w;     /* width that s and V answer to */
+    int inner;    /* cell behind it that tells how the width departs from the asymptote, -1: none */
+    double depth; /* how much deeper that lies */
+    double curvature; /* of the front, positive where it is convex; 0: not known */
 } front_seed;
 
 /* A cell outside the channel that the marching reached, in the order of distance. */

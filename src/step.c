@@ -2,6 +2,7 @@
 
 #include "clock.h"
 #include "rim.h"
+#include "shape.h"
 #include "tuning.h"
 #include <math.h>
 #include <stdlib.h>
@@ -87,6 +88,7 @@ static ilsa_status begin(ilsa_solver *s, double dt) {
     if (find_seeds(s) != ILSA_OK || ilsai_anderson_begin(s->mixer, s->seed_count) != ILSA_OK) {
         return ILSA_ERR_MEMORY;
     }
+    ilsai_shape_set(s, s->seeds, s->seed_count);
     return ilsai_rim_begin(s, dt);
 }
 
@@ -110,7 +112,7 @@ static void place_front(ilsa_solver *s, double dt) {
         front_seed *seed = &s->seeds[k];
         seed->s = s->distance[k];
         seed->V = (seed->s - seed->s0) / dt;
-        seed->w = s->trial.width[seed->cell];
+        seed->w = ilsai_shape_first_term(s, seed);
     }
 }
 
@@ -147,7 +149,8 @@ static double survey(ilsa_solver *s, double dt) {
     double largest = 0;
     for (int k = 0; k < s->seed_count; k++) {
         const front_seed *seed = &s->seeds[k];
-        tip_front at = ilsai_tip_distance(&s->material, s->trial.width[seed->cell], seed->s0, dt);
+        tip_front at =
+            ilsai_tip_distance(&s->material, ilsai_shape_first_term(s, seed), seed->s0, dt);
         s->next_distance[k] = bounded(seed, at.s);
         double change = fabs(s->next_distance[k] - s->distance[k]) / seed->h;
         largest = change > largest || isnan(change) ? change : largest;

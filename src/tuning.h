@@ -25,9 +25,9 @@
 /* Front: from this pass on a cell that has been tip or channel in the pass before stays so unless
  * the front is further than HOLD from filling it, in parts of the full ell: the widths of the two
  * kinds differ by the tip model's error, and the front would go to and fro between them. */
-#define ILSAI_HOLD_PASS 4
-#define ILSAI_HOLD 0.1
-#define ILSAI_ANDERSON_DEPTH   5
+#define ILSAI_HOLD_PASS      4
+#define ILSAI_HOLD           0.1
+#define ILSAI_ANDERSON_DEPTH 5
 /* Front: largest advance in one step, in cells; a cell entered and left in a step is still right.
  */
 #define ILSAI_ADVANCE_MAX 2.0
@@ -48,6 +48,19 @@
 
 /* Source: closer to a cell edge than this, in cells, it feeds the cells on both sides. */
 #define ILSAI_EDGE_CELLS 1e-9
+/* Shape of the front: how far along it a parabola is fitted, in cells; cosine above which normals
+ * belong to the same stretch; largest curvature, per cell; component of the normal from which the
+ * cell behind lies on the diagonal (sine of 22.5 degrees). */
+#define ILSAI_SHAPE_REACH 3.5
+#define ILSAI_SHAPE_ALIKE 0.3
+/* Least number of points of such a fit, and how far to both sides they must go, as a part of it. */
+#define ILSAI_SHAPE_POINTS    4
+#define ILSAI_SHAPE_SPAN      0.4
+#define ILSAI_SHAPE_CURVATURE 0.5
+#define ILSAI_SHAPE_DIAGONAL  0.38268343236508977
+/* Width behind the tip: largest part that the term after the asymptote may have. */
+#define ILSAI_NEXT_TERM_MAX 0.3
+
 /* Start: smallest radius of the penny, in cells. */
 #define ILSAI_START_CELLS 2.0
 

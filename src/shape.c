@@ -1,0 +1,181 @@
+#include "shape.h"
+
+#include "tuning.h"
+#include <math.h>
+
+typedef struct vector {
+    double x, y;
+} vector;
+
+static int on_mesh(const ilsa_solver *s, int i, int j) {
+    return i >= 0 && i < s->mesh.nx && j >= 0 && j < s->mesh.ny;
+}
+
+/* Whether the march has set the level of a cell: not so in the channel behind the survey cells. */
+static double level_at(const ilsa_solver *s, int i, int j) {
+    if (!on_mesh(s, i, j)) {
+        return INFINITY;
+    }
+    int cell = j * s->mesh.nx + i;
+    return s->field.kind[cell] == ILSA_CELL_CHANNEL ? INFINITY : s->field.level[cell];
+}
+
+/* Slope of the level along one axis from the lower of the two neighbours, 0 if both are higher. */
+static double upwind_slope(double here, double below, double above, double d) {
+    double lower = fmin(below, above);
+    if (!(lower < here)) {
+        return 0;
+    }
+    return (below <= above ? here - below : above - here) / d;
+}
+
+/* Normal of the front in a cell outside the channel, pointing outwards; 0 where it is not known. */
+static vector normal_in(const ilsa_solver *s, int i, int j) {
+    double here = level_at(s, i, j);
+    vector n = {0, 0};
+    if (!isfinite(here)) {
+        return n;
+    }
+    n.x = upwind_slope(here, level_at(s, i - 1, j), level_at(s, i + 1, j), s->mesh.dx);
+    n.y = upwind_slope(here, level_at(s, i, j - 1), level_at(s, i, j + 1), s->mesh.dy);
+    double size = hypot(n.x, n.y);
+    return size > 0 ? (vector){n.x / size, n.y / size} : n;
+}
+
+/* Mean normal of the cells across the open faces of survey cell (i, j). */
+static vector normal_seen(const ilsa_solver *s, int i, int j) {
+    static const int side[GRID_FACES][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
+    vector sum = {0, 0};
+    for (int face = 0; face < GRID_FACES; face++) {
+        int a = i + side[face][0], b = j + side[face][1];
+        if (on_mesh(s, a, b) && s->field.kind[b * s->mesh.nx + a] < ILSA_CELL_SURVEY) {
+            vector n = normal_in(s, a, b);
+            sum.x += n.x;
+            sum.y += n.y;
+        }
+    }
+    double size = hypot(sum.x, sum.y);
+    return size > 0 ? (vector){sum.x / size, sum.y / size} : sum;
+}
+
+/* Normal equations of a parabola eta = c0 + c1 xi + c2 xi^2. */
+typedef struct parabola {
+    double m[5], r[3]; /* sums of xi^k, of eta xi^k */
+    double least, largest;
+} parabola;
+
+static void add_point(parabola *p, double xi, double eta) {
+    double power = 1;
+    for (int k = 0; k < 5; k++) {
+        p->m[k] += power;
+        if (k < 3) {
+            p->r[k] += eta * power;
+        }
+        power *= xi;
+    }
+    p->least = fmin(p->least, xi);
+    p->largest = fmax(p->largest, xi);
+}
+
+/* -2 c2 over (1 + c1^2)^(3/2), by Cramer's rule; 0 for points that do not settle it. */
+static double fitted_curvature(const parabola *p, double span) {
+    const double *m = p->m, *r = p->r;
+    if (p->m[0] < ILSAI_SHAPE_POINTS || p->least > -span || p->largest < span) {
+        return 0;
+    }
+    double det = m[0] * (m[2] * m[4] - m[3] * m[3]) - m[1] * (m[1] * m[4] - m[2] * m[3]) +
+                 m[2] * (m[1] * m[3] - m[2] * m[2]);
+    double c1 = m[0] * (r[1] * m[4] - m[3] * r[2]) - r[0] * (m[1] * m[4] - m[2] * m[3]) +
+                m[2] * (m[1] * r[2] - r[1] * m[2]);
+    double c2 = m[0] * (m[2] * r[2] - r[1] * m[3]) - m[1] * (m[1] * r[2] - r[1] * m[2]) +
+                r[0] * (m[1] * m[3] - m[2] * m[2]);
+    if (!(fabs(det) > 1e-12 * m[0] * m[2] * m[4])) {
+        return 0;
+    }
+    double slope = c1 / det;
+    return -2 * c2 / det / pow(1 + slope * slope, 1.5);
+}
+
+/* Curvature of the front through the tip cells around the point it has in front of (i, j). */
+static double curvature_at(const ilsa_solver *s, int i, int j, vector n, double distance) {
+    double size = fmax(s->mesh.dx, s->mesh.dy), reach = ILSAI_SHAPE_REACH * size;
+    double x0 = ilsai_mesh_x(&s->mesh, i) + distance * n.x;
+    double y0 = ilsai_mesh_y(&s->mesh, j) + distance * n.y;
+    int wx = (int)ceil(reach / s->mesh.dx) + 1, wy = (int)ceil(reach / s->mesh.dy) + 1;
+    parabola p = {{0}, {0}, INFINITY, -INFINITY};
+    for (int b = j - wy; b <= j + wy; b++) {
+        for (int a = i - wx; a <= i + wx; a++) {
+            if (!on_mesh(s, a, b) || s->field.kind[b * s->mesh.nx + a] != ILSA_CELL_TIP) {
+                continue;
+            }
+            vector m = normal_in(s, a, b);
+            double level = s->field.level[b * s->mesh.nx + a];
+            double x = ilsai_mesh_x(&s->mesh, a) - level * m.x - x0;
+            double y = ilsai_mesh_y(&s->mesh, b) - level * m.y - y0;
+            double xi = -x * n.y + y * n.x;
+            if (m.x * n.x + m.y * n.y > ILSAI_SHAPE_ALIKE && fabs(xi) <= reach) {
+                add_point(&p, xi, x * n.x + y * n.y);
+            }
+        }
+    }
+    double curvature = fitted_curvature(&p, ILSAI_SHAPE_SPAN * reach),
+           limit = ILSAI_SHAPE_CURVATURE / size;
+    return fmax(-limit, fmin(limit, curvature));
+}
+
+/* Whether a cell can tell the width further in; then its depth behind the seed is set. */
+static int try_inner(const ilsa_solver *s, front_seed *seed, int i, int j, vector n, int di, int dj,
+                     unsigned char least) {
+    if (!on_mesh(s, i + di, j + dj)) {
+        return 0;
+    }
+    int cell = (j + dj) * s->mesh.nx + i + di;
+    double along = -(di * s->mesh.dx * n.x + dj * s->mesh.dy * n.y);
+    double across = -di * s->mesh.dx * n.y + dj * s->mesh.dy * n.x;
+    double depth = along - 0.5 * seed->curvature * across * across;
+    if (s->field.kind[cell] < least || !(depth > 0) || s->sigma[cell] != s->sigma[seed->cell]) {
+        return 0;
+    }
+    seed->inner = ilsai_grid_fold(&s->g, i + di, j + dj);
+    seed->depth = depth;
+    return 1;
+}
+
+/*
+ * The cell behind (i, j) along the normal, under the same stress: two cells in if the channel is
+ * that deep, else the next one. The width follows the tip's only where the stress does not jump.
+ */
+static void find_inner(const ilsa_solver *s, front_seed *seed, int i, int j, vector n) {
+    int di = fabs(n.x) > ILSAI_SHAPE_DIAGONAL ? (n.x > 0 ? -1 : 1) : 0;
+    int dj = fabs(n.y) > ILSAI_SHAPE_DIAGONAL ? (n.y > 0 ? -1 : 1) : 0;
+    seed->inner = -1;
+    if (!try_inner(s, seed, i, j, n, 2 * di, 2 * dj, ILSA_CELL_CHANNEL)) {
+        try_inner(s, seed, i, j, n, di, dj, ILSA_CELL_SURVEY);
+    }
+}
+
+void ilsai_shape_set(const ilsa_solver *s, front_seed *seeds, int count) {
+    for (int k = 0; k < count; k++) {
+        front_seed *seed = &seeds[k];
+        int i = seed->cell % s->mesh.nx, j = seed->cell / s->mesh.nx;
+        vector n = normal_seen(s, i, j);
+        seed->curvature = curvature_at(s, i, j, n, seed->s0);
+        find_inner(s, seed, i, j, n);
+    }
+}
+
+double ilsai_shape_first_term(const ilsa_solver *s, const front_seed *seed) {
+    double w = s->trial.width[seed->cell];
+    if (seed->inner < 0) {
+        return w;
+    }
+    double deep = seed->s + seed->depth, here = sqrt(seed->s), there = sqrt(deep);
+    if (seed->V > 0) {
+        here = ilsai_tip_width(&s->material, seed->V, seed->s);
+        there = ilsai_tip_width(&s->material, seed->V, deep);
+    }
+    double q = s->trial.width[seed->inner] * here / (w * there);
+    double below = deep - q * seed->s, limit = ILSAI_NEXT_TERM_MAX;
+    double term = below > 0 ? (q - 1) * seed->s / below : limit;
+    return w / (1 + fmax(-limit, fmin(limit, term)));
+}
