@@ -14,11 +14,13 @@ struct coupled {
     jacobian matrix;
     gmres *krylov;
     double *rhs, *step;
+    double *shift; /* change of the source terms at the front in this solve */
     int capacity;
     int *factored; /* the cells, in order, that the stencil factors were made for */
     unsigned char *factored_tip;
     int factored_count, factored_capacity;
     int fresh_iterations, last_iterations; /* of GMRES: with the factors new, and lately */
+    int response_capacity;
     size_t mesh_cells;
 };
 
@@ -46,6 +48,7 @@ void ilsai_coupled_destroy(coupled **c) {
         ilsai_gmres_destroy(&(*c)->krylov);
         free((*c)->rhs);
         free((*c)->step);
+        free((*c)->shift);
         free((*c)->factored);
         free((*c)->factored_tip);
         free(*c);
@@ -68,7 +71,9 @@ static ilsa_status reserve(coupled *c, int count) {
         c->rhs = rhs ? rhs : c->rhs;
         double *step = realloc(c->step, capacity * sizeof *step);
         c->step = step ? step : c->step;
-        if (!rhs || !step) {
+        double *shift = realloc(c->shift, capacity * sizeof *shift);
+        c->shift = shift ? shift : c->shift;
+        if (!rhs || !step || !shift) {
             return ILSA_ERR_MEMORY;
         }
         c->capacity = (int)capacity;
@@ -122,7 +127,8 @@ static void set_rhs(coupled *c, const coupled_problem *problem) {
     ilsai_flow_gain(&c->fluid, a, problem->pressure, c->rhs);
     for (int k = 0; k < a->count; k++) {
         int cell = a->cell[k];
-        c->rhs[k] += problem->gain[cell] - (problem->width[cell] - problem->width_old[cell]);
+        c->rhs[k] +=
+            problem->gain[cell] + c->shift[k] - (problem->width[cell] - problem->width_old[cell]);
     }
 }
 
@@ -181,7 +187,9 @@ static double take_step(const coupled *c, const coupled_problem *problem, double
         int cell = c->cells.cell[k];
         double delta = length * c->step[k];
         sum += delta;
+        c->shift[k] += length * ilsai_jacobian_tip_gain(&c->matrix, k, c->step);
         if (c->cells.tip[k]) {
+            problem->width[cell] += length * ilsai_jacobian_tip_width(&c->matrix, k, c->step);
             problem->pressure[cell] += delta;
         } else {
             problem->width[cell] += delta;
@@ -228,6 +236,27 @@ static ilsa_status newton(coupled *c, const coupled_problem *problem, coupled_co
     return status != ILSA_OK ? status : length < 1 ? ILSA_CLOSED : ILSA_STEP_REJECTED;
 }
 
+/* Which active cell has which response. */
+static ilsa_status find_responses(coupled *c, const coupled_problem *problem) {
+    if (c->cells.count > c->response_capacity) {
+        size_t capacity = (size_t)c->cells.count + (size_t)c->cells.count / 2 + 64;
+        int *fresh = realloc(c->matrix.response_of, capacity * sizeof *fresh);
+        if (!fresh) {
+            return ILSA_ERR_MEMORY;
+        }
+        c->matrix.response_of = fresh;
+        c->response_capacity = (int)capacity;
+    }
+    for (int k = 0; k < c->cells.count; k++) {
+        c->matrix.response_of[k] = -1;
+        c->shift[k] = 0;
+    }
+    for (int r = 0; r < problem->response_count; r++) {
+        c->matrix.response_of[c->cells.slot[problem->response[r].cell]] = r;
+    }
+    return ILSA_OK;
+}
+
 ilsa_status ilsai_coupled_solve(coupled *c, const coupled_problem *problem,
                                 coupled_counts *counts) {
     ilsa_status status =
@@ -245,6 +274,10 @@ ilsa_status ilsai_coupled_solve(coupled *c, const coupled_problem *problem,
     c->matrix.a = &c->cells;
     c->matrix.f = &c->fluid;
     c->matrix.e = problem->e;
+    c->matrix.response = problem->response_count > 0 ? problem->response : NULL;
+    if (find_responses(c, problem) != ILSA_OK) {
+        return ILSA_ERR_MEMORY;
+    }
     c->factored_count = problem->fresh ? 0 : c->factored_count;
     c->matrix.products = 0;
     c->matrix.seconds_product = c->matrix.seconds_preconditioner = 0;

@@ -7,6 +7,7 @@
 
 #include "elasticity.h"
 #include "grid.h"
+#include "jacobian.h"
 
 typedef struct coupled coupled;
 
@@ -18,13 +19,15 @@ void ilsai_coupled_destroy(coupled **c);
 typedef struct coupled_problem {
     const grid *g;
     elasticity *e;
-    box footprint;             /* the active cells and their images */
-    const unsigned char *kind; /* ILSA_CELL_EMPTY cells take no part */
-    const double *sigma;       /* far-field stress */
-    const double *width_old;   /* at the start of the step */
-    const double *gain;        /* S of (4.4): injected less leaked in the step, per area */
-    double *width;             /* in: first guess, and the tip widths; out: solution, with images */
-    double *pressure;          /* in: first guess in tip cells; out: solution */
+    box footprint;                /* the active cells and their images */
+    const unsigned char *kind;    /* ILSA_CELL_EMPTY cells take no part */
+    const double *sigma;          /* far-field stress */
+    const double *width_old;      /* at the start of the step */
+    const double *gain;           /* S of (4.4): injected less leaked in the step, per area */
+    const tip_response *response; /* of cells at the front to the widths, NULL: none */
+    int response_count;
+    double *width;    /* in: first guess, and the tip widths; out: solution, with images */
+    double *pressure; /* in: first guess in tip cells; out: solution */
     double dt, mu_prime;
     ilsa_linear_solver linear;
     double tolerance; /* of the error in width, relative to the largest */

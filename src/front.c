@@ -7,6 +7,7 @@
 /* A cell's value as seen by its neighbours while the march goes on. */
 typedef struct node {
     double T, V, K_num, K_den, curvature;
+    front_parents from;
     double cos_a, sin_a;
     int cell;
     int place; /* in the heap, -1 when accepted */
@@ -161,6 +162,7 @@ static void one_sided(node *n, const node *from, double h, int along_x) {
     n->K_num = from->K_num;
     n->K_den = from->K_den;
     n->curvature = from->curvature;
+    n->from = from->from;
     n->cos_a = along_x ? 1 : 0;
     n->sin_a = along_x ? 0 : 1;
 }
@@ -200,6 +202,44 @@ static void bend(node *n, const node *a, const node *b, double dx, double dy) {
     }
 }
 
+/* Joins the parents of b to those of a, with weights; the least are dropped when there are more. */
+static front_parents join(const front_parents *a, double weight_a, const front_parents *b,
+                          double weight_b) {
+    int count = 0, seed[2 * FRONT_PARENTS];
+    double weight[2 * FRONT_PARENTS], sum = 0;
+    for (int k = 0; k < a->count; k++, count++) {
+        seed[count] = a->seed[k];
+        weight[count] = weight_a * a->weight[k];
+    }
+    for (int k = 0; k < b->count; k++) {
+        int at = 0;
+        while (at < count && seed[at] != b->seed[k]) {
+            at++;
+        }
+        seed[at] = b->seed[k];
+        weight[at] = (at < count ? weight[at] : 0) + weight_b * b->weight[k];
+        count += at == count;
+    }
+    while (count > FRONT_PARENTS) {
+        int least = 0;
+        for (int k = 1; k < count; k++) {
+            least = weight[k] < weight[least] ? k : least;
+        }
+        count--;
+        seed[least] = seed[count];
+        weight[least] = weight[count];
+    }
+    front_parents joined = {.count = count};
+    for (int k = 0; k < count; k++) {
+        sum += weight[k];
+    }
+    for (int k = 0; k < count; k++) {
+        joined.seed[k] = seed[k];
+        joined.weight[k] = weight[k] / sum;
+    }
+    return joined;
+}
+
 /*
  * The march from two neighbours. The velocity is the derivative of (4.12), so the neighbours weigh
  * by cos a / dx and sin a / dy.
@@ -213,6 +253,7 @@ static int two_sided(node *n, const node *a, const node *b, double dx, double dy
     n->K_num = a->K_num + b->K_num;
     n->K_den = a->K_den + b->K_den;
     n->curvature = (wa * a->curvature + wb * b->curvature) / slope;
+    n->from = join(&a->from, wa, &b->from, wb);
     if (n->curvature != 0) {
         bend(n, a, b, dx, dy);
     }
@@ -233,7 +274,8 @@ static void update(const front *f, const grid *g, node *n) {
     }
 }
 
-static ilsa_status add_seed(front *f, const grid *g, const front_seed *seed) {
+static ilsa_status add_seed(front *f, const grid *g, const front_seed *seeds, int k) {
+    const front_seed *seed = &seeds[k];
     int *slot = node_slot(f, g, seed->cell);
     if (!slot) {
         return ILSA_OK;
@@ -244,6 +286,7 @@ static ilsa_status add_seed(front *f, const grid *g, const front_seed *seed) {
     node n = {.T = -seed->s, .V = seed->V, .K_den = seed->s, .cell = seed->cell, .place = -1};
     n.K_num = seed->w * sqrt(seed->s);
     n.curvature = seed->curvature;
+    n.from = (front_parents){.count = 1, .seed = {k}, .weight = {1}};
     *slot = f->node_count;
     f->nodes[f->node_count++] = n;
     return ILSA_OK;
@@ -288,6 +331,7 @@ static void accept(front *f, const grid *g, const node *n, double *level) {
     front_cell c = {.cell = n->cell, .T = n->T, .cos_a = n->cos_a, .sin_a = n->sin_a};
     c.ell = 0.5 * ilsai_front_full(g, n->cos_a, n->sin_a) - n->T;
     c.V = n->V;
+    c.from = n->from;
     c.K_num = n->K_num;
     c.K_den = n->K_den;
     f->cells[f->cell_count++] = c;
@@ -312,7 +356,7 @@ ilsa_status ilsai_front_march(front *f, const grid *g, const box *region, const 
     ilsa_status status = set_region(f, region);
     clear_level(g, region, kind, level);
     for (int k = 0; k < seed_count && status == ILSA_OK; k++) {
-        status = add_seed(f, g, &seeds[k]);
+        status = add_seed(f, g, seeds, k);
         level[seeds[k].cell] = -seeds[k].s;
     }
     for (int k = 0; k < seed_count && status == ILSA_OK; k++) {

@@ -11,15 +11,25 @@
 /* A survey cell: where the marching starts. */
 typedef struct front_seed {
     int cell;
-    double s0;    /* distance to the front at the start of the step */
-    double h;     /* cell size along the normal */
-    double s;     /* distance now */
-    double V;     /* (s - s0) / dt */
-    double w;     /* width that s and V answer to */
+    double s0;       /* distance to the front at the start of the step */
+    double h;        /* cell size along the normal */
+    double s;        /* distance now */
+    double V;        /* (s - s0) / dt */
+    double w;        /* width that s and V answer to */
+    double ds_dw;    /* derivative of s by the width of the cell */
+    double ds_inner; /* and by that of the inner cell */
     int inner;    /* cell behind it that tells how the width departs from the asymptote, -1: none */
     double depth; /* how much deeper that lies */
     double curvature; /* of the front, positive where it is convex; 0: not known */
 } front_seed;
+
+/* The survey cells that a cell's level comes from, and the derivatives -dT / ds of it. */
+enum { FRONT_PARENTS = 4 };
+typedef struct front_parents {
+    int count;
+    int seed[FRONT_PARENTS];
+    double weight[FRONT_PARENTS]; /* positive, sum 1 */
+} front_parents;
 
 /* A cell outside the channel that the marching reached, in the order of distance. */
 typedef struct front_cell {
@@ -28,6 +38,7 @@ typedef struct front_cell {
     double cos_a, sin_a; /* normal of the front, reflected into 0 .. pi/2 */
     double ell;          /* distance of the front from the farthest interior corner, (4.13) */
     double V;            /* velocity of the front, from the survey cells upwind */
+    front_parents from;
     double K_num, K_den; /* sums of w s^(1/2) and s over them: E' times their ratio is (4.19) */
 } front_cell;
 

@@ -1,6 +1,7 @@
 #include "jacobian.h"
 
 #include "clock.h"
+#include <cblas.h>
 #include <ilsa/solver.h>
 #include <lapacke.h>
 #include <math.h>
@@ -14,7 +15,32 @@ void ilsai_jacobian_destroy(jacobian *m) {
     free(m->full);
     free(m->influence);
     free(m->pivots);
+    free(m->response_of);
     memset(m, 0, sizeof *m);
+}
+
+static const tip_response *response_of(const jacobian *m, int k) {
+    return m->response && m->response_of[k] >= 0 ? &m->response[m->response_of[k]] : NULL;
+}
+
+/* Sum of a response's weights times the changes of the widths it answers to. */
+static double respond(const jacobian *m, const tip_response *r, const double *weight,
+                      const double *x) {
+    double sum = 0;
+    for (int p = 0; r && p < r->count; p++) {
+        sum += weight[p] * x[m->a->slot[r->from[p]]];
+    }
+    return sum;
+}
+
+double ilsai_jacobian_tip_width(const jacobian *m, int k, const double *x) {
+    const tip_response *r = response_of(m, k);
+    return r ? respond(m, r, r->width, x) : 0;
+}
+
+double ilsai_jacobian_tip_gain(const jacobian *m, int k, const double *x) {
+    const tip_response *r = response_of(m, k);
+    return r ? respond(m, r, r->gain, x) : 0;
 }
 
 /* Pressure changes that the width changes x of the channel cells bring about, and the tip's own. */
@@ -24,8 +50,9 @@ static void apply_elasticity(jacobian *m, const double *x) {
     for (int k = 0; k < a->count; k++) {
         int cell = a->cell[k];
         int count = ilsai_grid_images(m->g, cell % m->g->nx, cell / m->g->nx, image);
+        double w = a->tip[k] ? ilsai_jacobian_tip_width(m, k, x) : x[k];
         for (int c = 0; c < count; c++) {
-            m->width[image[c]] = a->tip[k] ? 0 : x[k];
+            m->width[image[c]] = w;
         }
     }
     double start = ilsai_clock();
@@ -65,7 +92,7 @@ void ilsai_jacobian_multiply(void *context, const double *x, double *y) {
                 from_width += m->f->slope[at] * (w + m->width[a->cell[other]]);
             }
         }
-        y[k] = w - from_width - y[k];
+        y[k] = w - from_width - y[k] - ilsai_jacobian_tip_gain(m, k, x);
     }
     clear_width(m);
 }
@@ -73,7 +100,11 @@ void ilsai_jacobian_multiply(void *context, const double *x, double *y) {
 /* Receives the entry of a row in a column. */
 typedef void entry_sink(jacobian *m, int row, int column, double value);
 
-/* What the pressure of active cell b, weighing value in a row, is in terms of the unknowns. */
+/*
+ * What the pressure of active cell b, weighing value in a row, is in terms of the unknowns. The tip
+ * widths' responses are left out of the stencil matrix: they would double its band and save
+ * nothing.
+ */
 static void spread_pressure(jacobian *m, int row, int b, double value, entry_sink *sink) {
     const active *a = m->a;
     if (a->tip[b]) {
@@ -97,7 +128,7 @@ static void spread_pressure(jacobian *m, int row, int b, double value, entry_sin
 
 static void visit_row(jacobian *m, int row, entry_sink *sink) {
     const active *a = m->a;
-    double diagonal = a->tip[row] ? 0 : 1, own_pressure = 0;
+    double diagonal = 1, own_pressure = 0;
     for (int face = 0; face < GRID_FACES; face++) {
         int at = GRID_FACES * row + face, other = a->neighbour[at];
         if (other < 0) {
@@ -108,7 +139,7 @@ static void visit_row(jacobian *m, int row, entry_sink *sink) {
         if (!a->tip[other]) {
             sink(m, row, other, -m->f->slope[at]);
         }
-        diagonal -= a->tip[row] ? 0 : m->f->slope[at];
+        diagonal -= m->f->slope[at];
     }
     spread_pressure(m, row, row, own_pressure, sink);
     if (!a->tip[row]) {
@@ -197,6 +228,24 @@ static double folded_entry(const jacobian *m, int a, int b) {
     return sum;
 }
 
+/* What the pressure of active cell row is in terms of the unknowns: C with the tips' responses. */
+static void fill_influence_row(jacobian *m, int row, double *out) {
+    const active *a = m->a;
+    memset(out, 0, (size_t)a->count * sizeof *out);
+    if (a->tip[row]) {
+        out[row] = 1;
+        return;
+    }
+    for (int k = 0; k < a->count; k++) {
+        double value = folded_entry(m, row, k);
+        const tip_response *r = a->tip[k] ? response_of(m, k) : NULL;
+        out[k] += a->tip[k] ? 0 : value;
+        for (int p = 0; r && p < r->count; p++) {
+            out[a->slot[r->from[p]]] += value * r->width[p];
+        }
+    }
+}
+
 ilsa_status ilsai_jacobian_set_influence(jacobian *m) {
     double start = ilsai_clock();
     size_t n = (size_t)m->a->count, capacity = m->full_capacity;
@@ -206,18 +255,19 @@ ilsa_status ilsai_jacobian_set_influence(jacobian *m) {
         return ILSA_ERR_MEMORY;
     }
     for (size_t row = 0; row < n; row++) {
-        for (size_t column = 0; column < n; column++) {
-            double value = 0;
-            if (m->a->tip[row] || m->a->tip[column]) {
-                value = m->a->tip[row] && row == column ? 1 : 0;
-            } else {
-                value = folded_entry(m, (int)row, (int)column);
-            }
-            m->influence[row * n + column] = value;
-        }
+        fill_influence_row(m, (int)row, m->influence + row * n);
     }
     m->seconds_preconditioner += ilsai_clock() - start;
     return ILSA_OK;
+}
+
+/* Adds what the width of an active cell is, times value, to a row. */
+static void add_width(const jacobian *m, double *out, int k, double value) {
+    const tip_response *r = response_of(m, k);
+    out[k] += m->a->tip[k] ? 0 : value;
+    for (int p = 0; m->a->tip[k] && r && p < r->count; p++) {
+        out[m->a->slot[r->from[p]]] += value * r->width[p];
+    }
 }
 
 /* Row k of the full matrix, stored as a column of the transpose. */
@@ -231,20 +281,17 @@ static void fill_full_row(jacobian *m, int row) {
         if (other < 0) {
             continue;
         }
-        const double *influence = m->influence + (size_t)other * n;
-        double conductance = m->f->conductance[at];
-        for (size_t c = 0; c < n; c++) {
-            out[c] -= conductance * influence[c];
-        }
-        out[other] -= a->tip[other] ? 0 : m->f->slope[at];
+        cblas_daxpy((int)n, -m->f->conductance[at], m->influence + (size_t)other * n, 1, out, 1);
+        add_width(m, out, other, -m->f->slope[at]);
         diagonal -= m->f->slope[at];
-        total += conductance;
+        total += m->f->conductance[at];
     }
-    const double *influence = m->influence + (size_t)row * n;
-    for (size_t c = 0; c < n; c++) {
-        out[c] += total * influence[c];
+    cblas_daxpy((int)n, total, m->influence + (size_t)row * n, 1, out, 1);
+    add_width(m, out, row, diagonal);
+    const tip_response *r = response_of(m, row);
+    for (int p = 0; r && p < r->count; p++) {
+        out[a->slot[r->from[p]]] -= r->gain[p];
     }
-    out[row] += a->tip[row] ? 0 : diagonal;
 }
 
 ilsa_status ilsai_jacobian_solve_full(jacobian *m, const double *b, double *x) {

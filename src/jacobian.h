@@ -11,6 +11,18 @@
 #include "elasticity.h"
 #include "flow.h"
 
+/*
+ * How the width and the source term of a cell at the front change with the widths of the survey
+ * cells that the front there is found from.
+ */
+enum { RESPONSE_PARENTS = 8 };
+typedef struct tip_response {
+    int cell;
+    int count;
+    int from[RESPONSE_PARENTS]; /* mesh cells */
+    double width[RESPONSE_PARENTS], gain[RESPONSE_PARENTS];
+} tip_response;
+
 typedef struct jacobian {
     const grid *g;
     const active *a;
@@ -19,7 +31,9 @@ typedef struct jacobian {
     double *width, *pressure; /* work over the mesh; width is zero outside the channel cells */
     double *band;             /* LAPACK band storage, factored */
     double *full;             /* LAPACK storage of the transpose, factored */
-    double *influence;        /* folded C between active cells, one row a cell */
+    const tip_response *response;
+    int *response_of;  /* per active cell: its response, or -1 */
+    double *influence; /* folded C between active cells, one row a cell */
     int *pivots;
     size_t band_capacity, full_capacity, pivot_capacity;
     int lower; /* sub- and superdiagonals of the band */
@@ -30,6 +44,10 @@ typedef struct jacobian {
 /* y = M x, and y = P^-1 x with the factored stencil matrix: gmres_operator on a jacobian. */
 void ilsai_jacobian_multiply(void *context, const double *x, double *y);
 void ilsai_jacobian_precondition(void *context, const double *x, double *y);
+
+/* Changes of the width and of the source term of active cell k for changes x of the unknowns. */
+double ilsai_jacobian_tip_width(const jacobian *m, int k, const double *x);
+double ilsai_jacobian_tip_gain(const jacobian *m, int k, const double *x);
 
 /* Assembles and factors the stencil matrix. ILSA_ERR_MEMORY; ILSA_ERR_NUMERIC if singular. */
 ilsa_status ilsai_jacobian_factor_stencil(jacobian *m);

@@ -2,6 +2,7 @@
 
 #include "tuning.h"
 #include <math.h>
+#include <stdlib.h>
 
 /* Volume leaked per area from a channel cell in the step, (4.8). */
 static double channel_leak(const ilsa_solver *s, int cell, double dt) {
@@ -198,4 +199,79 @@ ilsa_status ilsai_rim_set(ilsa_solver *s, double dt, int hold) {
         }
     }
     return status;
+}
+
+/* Leak-off of the cell in the step if the front were where c has it. */
+static double leak_for(const ilsa_solver *s, const front_cell *c, double dt) {
+    tipcell_front at = {c->ell, c->cos_a, c->sin_a, s->g.dx, s->g.dy};
+    tipcell_history history = path_in_cell(s, c, dt);
+    double total = ilsai_tipcell_leakoff(s->material.C_prime, &at, &history);
+    double leak = total / (s->g.dx * s->g.dy) - s->field.leaked[c->cell];
+    return leak > 0 ? leak : 0;
+}
+
+/* Derivatives of mean width and gain by an advance of the front within the step. */
+static void differentiate(const ilsa_solver *s, const front_cell *c, double dt, double *width,
+                          double *gain) {
+    double small = ILSAI_DIFFERENCE * ilsai_grid_h(&s->g);
+    front_cell moved = *c;
+    moved.ell += small;
+    moved.T -= small;
+    moved.V += small / dt;
+    *width = *gain = 0;
+    if (s->trial.kind[c->cell] == ILSA_CELL_TIP) {
+        *width = (mean_width(s, &moved) - s->trial.width[c->cell]) / small;
+    }
+    if (ilsai_has_leakoff(s)) {
+        *gain = (s->leak[c->cell] - leak_for(s, &moved, dt)) / small;
+    }
+}
+
+/* Adds a cell that a response answers to. */
+static void answer_to(tip_response *r, int cell, double width, double gain) {
+    r->from[r->count] = cell;
+    r->width[r->count] = width;
+    r->gain[r->count++] = gain;
+}
+
+/* A front at rest answers with its stress intensity, (4.19); a moving one by moving. */
+static tip_response response_in(const ilsa_solver *s, const front_cell *c, double dt) {
+    tip_response r = {.cell = c->cell};
+    double width, gain;
+    differentiate(s, c, dt, &width, &gain);
+    for (int p = 0; p < c->from.count; p++) {
+        const front_seed *seed = &s->seeds[c->from.seed[p]];
+        double by_cell = c->from.weight[p] * seed->ds_dw;
+        double by_inner = c->from.weight[p] * seed->ds_inner;
+        if (c->V > 0) {
+            answer_to(&r, seed->cell, width * by_cell, gain * by_cell);
+            if (seed->inner >= 0) {
+                answer_to(&r, seed->inner, width * by_inner, gain * by_inner);
+            }
+        } else if (s->trial.kind[c->cell] == ILSA_CELL_TIP) {
+            answer_to(&r, seed->cell, s->trial.width[c->cell] * sqrt(seed->s) / c->K_num, 0);
+        }
+    }
+    return r;
+}
+
+ilsa_status ilsai_rim_respond(ilsa_solver *s, double dt) {
+    int count;
+    const front_cell *cells = ilsai_front_cells(s->march, &count);
+    s->response_count = 0;
+    if (count > s->response_capacity) {
+        size_t capacity = (size_t)count + (size_t)count / 2 + 16;
+        tip_response *fresh = realloc(s->responses, capacity * sizeof *fresh);
+        if (!fresh) {
+            return ILSA_ERR_MEMORY;
+        }
+        s->responses = fresh;
+        s->response_capacity = (int)capacity;
+    }
+    for (int k = 0; k < count; k++) {
+        if (s->trial.kind[cells[k].cell] != ILSA_CELL_EMPTY) {
+            s->responses[s->response_count++] = response_in(s, &cells[k], dt);
+        }
+    }
+    return ILSA_OK;
 }

@@ -163,19 +163,3 @@ void ilsai_shape_set(const ilsa_solver *s, front_seed *seeds, int count) {
         find_inner(s, seed, i, j, n);
     }
 }
-
-double ilsai_shape_first_term(const ilsa_solver *s, const front_seed *seed) {
-    double w = s->trial.width[seed->cell];
-    if (seed->inner < 0) {
-        return w;
-    }
-    double deep = seed->s + seed->depth, here = sqrt(seed->s), there = sqrt(deep);
-    if (seed->V > 0) {
-        here = ilsai_tip_width(&s->material, seed->V, seed->s);
-        there = ilsai_tip_width(&s->material, seed->V, deep);
-    }
-    double q = s->trial.width[seed->inner] * here / (w * there);
-    double below = deep - q * seed->s, limit = ILSAI_NEXT_TERM_MAX;
-    double term = below > 0 ? (q - 1) * seed->s / below : limit;
-    return w / (1 + fmax(-limit, fmin(limit, term)));
-}

@@ -170,6 +170,7 @@ void ilsa_solver_destroy(ilsa_solver **solver) {
     free(s->gain);
     free(s->leak);
     free(s->seeds);
+    free(s->responses);
     free(s->distance);
     free(s->next_distance);
     free(s->sigma);

@@ -82,6 +82,8 @@ struct ilsa_solver {
     front_seed *seeds;
     double *distance, *next_distance;
     int seed_count, seed_capacity;
+    tip_response *responses; /* of the cells at the front in this pass */
+    int response_count, response_capacity;
     box trial_footprint;
 
     double *sigma;

@@ -3,6 +3,7 @@
 #include "clock.h"
 #include "rim.h"
 #include "shape.h"
+#include "survey.h"
 #include "tuning.h"
 #include <math.h>
 #include <stdlib.h>
@@ -112,7 +113,7 @@ static void place_front(ilsa_solver *s, double dt) {
         front_seed *seed = &s->seeds[k];
         seed->s = s->distance[k];
         seed->V = (seed->s - seed->s0) / dt;
-        seed->w = ilsai_shape_first_term(s, seed);
+        seed->w = ilsai_survey_width(s, seed);
     }
 }
 
@@ -137,63 +138,79 @@ static coupled_problem pose(ilsa_solver *s, double dt, int pass, double change) 
                                .dt = dt,
                                .mu_prime = s->material.mu_prime,
                                .linear = s->def.linear,
+                               .response = s->responses,
+                               .response_count = s->response_count,
                                .fresh = pass == 0};
     double aim = 0.3 * change > s->tolerance ? 0.3 * change : s->tolerance;
     problem.tolerance = ILSAI_WIDTH_TOLERANCE * (aim < 0.1 ? aim : 0.1);
     return problem;
 }
 
-/* Where the widths want the front (4.9); returns the largest difference to where it is, in cells.
- */
+/* Where the widths want the front; returns the largest difference to where it is, in cells. */
 static double survey(ilsa_solver *s, double dt) {
     double largest = 0;
     for (int k = 0; k < s->seed_count; k++) {
-        const front_seed *seed = &s->seeds[k];
-        tip_front at =
-            ilsai_tip_distance(&s->material, ilsai_shape_first_term(s, seed), seed->s0, dt);
-        s->next_distance[k] = bounded(seed, at.s);
+        front_seed *seed = &s->seeds[k];
+        s->next_distance[k] = bounded(seed, ilsai_survey_distance(s, seed, dt));
         double change = fabs(s->next_distance[k] - s->distance[k]) / seed->h;
         largest = change > largest || isnan(change) ? change : largest;
     }
     return largest;
 }
 
-static void mix(ilsa_solver *s) {
+/*
+ * The next distances. While the cells at the front answer within the Newton system the widths have
+ * already foreseen the front's move; afterwards the iteration is a fixed point to be accelerated.
+ */
+static void move_front(ilsa_solver *s, int pass) {
+    if (pass + 1 < ILSAI_RESPONSE_PASSES) {
+        memcpy(s->distance, s->next_distance, (size_t)s->seed_count * sizeof *s->distance);
+        return;
+    }
     ilsai_anderson_next(s->mixer, s->next_distance, s->distance);
     for (int k = 0; k < s->seed_count; k++) {
         s->distance[k] = bounded(&s->seeds[k], s->distance[k]);
     }
 }
 
-/* Passes of the front loop until front and widths agree. */
+/* The front where it is now: cells, tip widths, leak-off; and how they answer to the widths. */
+static ilsa_status set_front(ilsa_solver *s, double dt, int pass) {
+    double start = ilsai_clock();
+    ilsa_status status = march(s, dt, pass >= ILSAI_HOLD_PASS);
+    s->response_count = 0;
+    if (status == ILSA_OK && pass > 0 && pass < ILSAI_RESPONSE_PASSES) {
+        status = ilsai_rim_respond(s, dt);
+    }
+    s->profile.front += ilsai_clock() - start;
+    return status;
+}
+
+/*
+ * Passes of the front loop until front and widths agree. In the first pass the predicted front is
+ * held, then the front moves with the widths.
+ */
 static ilsa_status iterate(ilsa_solver *s, double dt, coupled_counts *counts, ilsa_report *report,
-                           double *last_change) {
-    double change = 1;
+                           double *change) {
+    *change = 1;
     for (int pass = 0; pass < ILSAI_FRONT_PASSES_MAX; pass++) {
-        double start = ilsai_clock();
         report->front_iterations++;
-        ilsa_status status = march(s, dt, pass >= ILSAI_HOLD_PASS);
-        s->profile.front += ilsai_clock() - start;
+        ilsa_status status = set_front(s, dt, pass);
+        coupled_problem problem = pose(s, dt, pass, *change);
+        status = status ? status : ilsai_coupled_solve(s->flow, &problem, counts);
         if (status != ILSA_OK) {
             return status;
         }
-        coupled_problem problem = pose(s, dt, pass, change);
-        status = ilsai_coupled_solve(s->flow, &problem, counts);
-        if (status != ILSA_OK) {
-            return status;
-        }
-        start = ilsai_clock();
-        change = survey(s, dt);
+        double start = ilsai_clock();
+        *change = survey(s, dt);
         s->profile.front += ilsai_clock() - start;
-        if (isnan(change)) {
+        if (isnan(*change)) {
             return ILSA_STEP_REJECTED;
         }
-        if (change <= s->tolerance) {
-            *last_change = change;
+        if (*change <= s->tolerance) {
             ilsai_coupled_pressure(s->flow, &problem, counts);
             return ILSA_OK;
         }
-        mix(s);
+        move_front(s, pass);
     }
     return ILSA_STEP_REJECTED;
 }

@@ -20,6 +20,11 @@
 /* Newton iterations of one coupled solve before the step is given up. */
 #define ILSAI_NEWTON_MAX 25
 
+/* Front: from this pass on the cells at the front no longer answer within the Newton system, and
+ * the distances are accelerated instead: a step that has not converged by then goes to and fro. */
+#define ILSAI_RESPONSE_PASSES 8
+/* Front: step of the differences that tell how a cell at the front answers, in cells. */
+#define ILSAI_DIFFERENCE 1e-5
 /* Front: passes before a step is given up, and the memory of the Anderson acceleration. */
 #define ILSAI_FRONT_PASSES_MAX 40
 /* Front: from this pass on a cell that has been tip or channel in the pass before stays so unless
@@ -58,6 +63,11 @@
 #define ILSAI_SHAPE_SPAN      0.4
 #define ILSAI_SHAPE_CURVATURE 0.5
 #define ILSAI_SHAPE_DIAGONAL  0.38268343236508977
+/* Survey: secant steps to the distance that agrees with the second term, the change in cells at
+ * which they end, and the largest slope that they believe. */
+#define ILSAI_SURVEY_SECANTS 3
+#define ILSAI_SURVEY_CLOSE   1e-9
+#define ILSAI_SURVEY_SLOPE   0.7
 /* Width behind the tip: largest part that the term after the asymptote may have. */
 #define ILSAI_NEXT_TERM_MAX 0.3
 

@@ -1,0 +1,22 @@
+/*
+ * The survey cells: where their widths want the front (4.9).
+ *
+ * Behind a front the width is w_a(s) (1 + b s + ...): w_a is the semi-infinite solution, b comes
+ * from the size and shape of the fracture (-1 / (4 R) for a penny under uniform pressure). The
+ * ratio of the widths of the survey cell and of the one behind it gives b.
+ */
+#ifndef ILSAI_SURVEY_H
+#define ILSAI_SURVEY_H
+
+#include "state.h"
+
+/* The width that the asymptote alone would have at a survey cell, at the seed's distance and V. */
+double ilsai_survey_width(const ilsa_solver *s, const front_seed *seed);
+
+/*
+ * The distance at which (4.9) and the term after the asymptote agree for the trial widths; sets the
+ * seed's derivatives of that distance by the widths of its cell and of the inner one.
+ */
+double ilsai_survey_distance(const ilsa_solver *s, front_seed *seed, double dt);
+
+#endif
