@@ -90,6 +90,7 @@ static ilsa_status attempt(ilsa_solver *s, double dt, ilsa_report *report) {
     ilsa_status status = ilsai_step(s, dt, report);
     report->steps = status == ILSA_OK;
     report->rejected = status != ILSA_OK;
+    s->now.dt_limit *= status == ILSA_OK ? ILSAI_DT_GROWTH : 1;
     if (reason(status)) {
         ilsai_fail(&s->error, status, "step of dt = %g at time %g: %s", dt, s->now.time,
                    reason(status));
@@ -128,8 +129,12 @@ static int try_again(ilsa_status status) {
     return status == ILSA_STEP_REJECTED || status == ILSA_STEP_TOO_LARGE || status == ILSA_CLOSED;
 }
 
-/* Steps shrink after a refusal and may grow again step by step. */
+/*
+ * Steps shrink after a refusal and may grow again step by step. Giving up leaves the solver as it
+ * was, so that another call tries in full again.
+ */
 static ilsa_status step_until_accepted(ilsa_solver *s, double t_limit, ilsa_report *report) {
+    const double limit = s->now.dt_limit;
     for (;;) {
         double left = t_limit - s->now.time, dt = suggestion(s);
         dt = dt >= left ? left : dt > 0.5 * left ? 0.5 * left : dt;
@@ -138,16 +143,14 @@ static ilsa_status step_until_accepted(ilsa_solver *s, double t_limit, ilsa_repo
         add_report(report, &one);
         if (status == ILSA_OK) {
             s->now.time = dt == left ? t_limit : s->now.time;
-            s->now.dt_limit *= ILSAI_DT_GROWTH;
             report->time = s->now.time;
             return ILSA_OK;
         }
-        if (!try_again(status)) {
-            return status;
-        }
         s->now.dt_limit = ILSAI_DT_CUT * dt;
-        if (s->now.dt_limit < ILSAI_DT_SMALLEST * s->now.time) {
-            return status == ILSA_CLOSED ? status : ILSA_STALLED;
+        int stalled = s->now.dt_limit < ILSAI_DT_SMALLEST * s->now.time;
+        if (!try_again(status) || stalled) {
+            s->now.dt_limit = limit;
+            return try_again(status) && status != ILSA_CLOSED ? ILSA_STALLED : status;
         }
     }
 }

@@ -9,6 +9,7 @@ enum { DEPTH_MAX = 10 };
 
 struct anderson {
     int depth, n, capacity;
+    int columns;     /* differences that can be of use: depth, at most n */
     int kept;        /* differences held, <= depth */
     int next;        /* column that the next difference goes to */
     int have_last;   /* last_g and last_f are set */
@@ -71,6 +72,7 @@ ilsa_status ilsai_anderson_begin(anderson *a, int n) {
         return ILSA_ERR_MEMORY;
     }
     a->n = n;
+    a->columns = a->depth < n ? a->depth : n;
     a->kept = a->next = a->have_last = 0;
     a->smallest = INFINITY;
     return ILSA_OK;
@@ -81,13 +83,13 @@ static void remember(anderson *a, const double *g, const double *x) {
     size_t n = (size_t)a->n;
     double *column_g = a->delta_g + (size_t)a->next * n,
            *column_f = a->delta_f + (size_t)a->next * n;
-    if (a->have_last && a->depth > 0) {
+    if (a->have_last && a->columns > 0) {
         for (size_t k = 0; k < n; k++) {
             column_g[k] = g[k] - a->last_g[k];
             column_f[k] = g[k] - x[k] - a->last_f[k];
         }
-        a->next = (a->next + 1) % a->depth;
-        a->kept += a->kept < a->depth;
+        a->next = (a->next + 1) % a->columns;
+        a->kept += a->kept < a->columns;
     }
     for (size_t k = 0; k < n; k++) {
         a->last_g[k] = g[k];
@@ -129,11 +131,10 @@ void ilsai_anderson_next(anderson *a, const double *g, double *x) {
     a->smallest = norm < a->smallest ? norm : a->smallest;
     remember(a, g, x);
     memcpy(x, g, (size_t)a->n * sizeof(double));
-    int columns = a->kept < a->n ? a->kept : a->n;
-    if (columns == 0 || columns < a->kept || !weights(a, columns)) {
+    if (a->kept == 0 || !weights(a, a->kept)) {
         return;
     }
-    for (int c = 0; c < columns; c++) {
+    for (int c = 0; c < a->kept; c++) {
         for (int k = 0; k < a->n; k++) {
             x[k] -= a->rhs[c] * a->delta_g[(size_t)c * (size_t)a->n + (size_t)k];
         }

@@ -28,7 +28,8 @@ static cover covered(int n, int i) {
 
 /* The new state while it is being made. */
 typedef struct coarse {
-    const ilsa_solver *s; /* the old one; its trial has the levels all through the channel */
+    const ilsa_solver *s; /* the old one; its trial has the levels all through the channel, its
+                             leak when the front has passed each centre, or will */
     ilsa_mesh_def mesh;
     fields field;
     tip_records tips;
@@ -46,43 +47,85 @@ static int on_mesh(const ilsa_mesh_def *m, int i, int j) {
     return i >= 0 && i < m->nx && j >= 0 && j < m->ny;
 }
 
+static void add(sums *to, double part, sums from) {
+    to->width += part * from.width;
+    to->leaked += part * from.leaked;
+    to->pressure += part * from.pressure;
+    to->wet += part * from.wet;
+}
+
+/* The k-th of the covered cells to be summed: both ends first, so that the sums of cells that
+ * mirror each other are equal. */
+static int outside_in(const cover *c, int k) {
+    return k == 0 ? 0 : k == 1 ? c->count - 1 : 1;
+}
+
 /* Area-weighted sums of the old fields over the new cell (i, j), in old cells. */
 static sums gather(const coarse *c, int i, int j) {
     const ilsa_mesh_def *old = &c->s->mesh;
     const fields *f = &c->s->field;
     cover across = covered(old->nx, i), up = covered(old->ny, j);
     sums sum = {0, 0, 0, 0};
-    for (int b = 0; b < up.count; b++) {
-        for (int a = 0; a < across.count; a++) {
-            int oi = across.first + a, oj = up.first + b, at = oj * old->nx + oi;
-            if (!on_mesh(old, oi, oj) || f->kind[at] == ILSA_CELL_EMPTY) {
-                continue;
+    for (int k = 0; k < up.count; k++) {
+        sums row = {0, 0, 0, 0};
+        int b = outside_in(&up, k), oj = up.first + b;
+        for (int m = 0; m < across.count; m++) {
+            int a = outside_in(&across, m), oi = across.first + a, at = oj * old->nx + oi;
+            if (on_mesh(old, oi, oj) && f->kind[at] != ILSA_CELL_EMPTY) {
+                double leaked = f->leaked ? f->leaked[at] : 0;
+                add(&row, across.part[a], (sums){f->width[at], leaked, f->pressure[at], 1});
             }
-            double part = across.part[a] * up.part[b];
-            sum.wet += part;
-            sum.width += part * f->width[at];
-            sum.pressure += part * f->pressure[at];
-            sum.leaked += f->leaked ? part * f->leaked[at] : 0;
         }
+        add(&sum, up.part[b], row);
     }
     return sum;
 }
 
-/* Mean of the finite values of an old field in the old cells around the new centre. */
-static double at_centre(const coarse *c, const double *field, int i, int j) {
+/* What is known of the old cell (i, j), which may be off the mesh; infinite where nothing is. */
+typedef double old_value(const coarse *c, int i, int j);
+
+static double on_old(const coarse *c, const double *field, int i, int j) {
+    return on_mesh(&c->s->mesh, i, j) ? field[j * c->s->mesh.nx + i] : INFINITY;
+}
+
+/* Beyond the last level kept, and off the mesh, it is a cell more than beside it. */
+static double old_level(const coarse *c, int i, int j) {
+    const double *level = c->s->trial.level;
+    double dx = c->s->mesh.dx, dy = c->s->mesh.dy, here = on_old(c, level, i, j);
+    double x = fmin(on_old(c, level, i - 1, j), on_old(c, level, i + 1, j)) + dx;
+    double y = fmin(on_old(c, level, i, j - 1), on_old(c, level, i, j + 1)) + dy;
+    return isfinite(here) ? here : fmin(x, y);
+}
+
+static double old_speed(const coarse *c, int i, int j) {
+    return on_old(c, c->s->trial.speed, i, j);
+}
+
+static double old_passing(const coarse *c, int i, int j) {
+    return on_old(c, c->s->leak, i, j);
+}
+
+/* Mean of the finite values in the old cells around the new centre. */
+static double at_centre(const coarse *c, old_value *value, int i, int j) {
     const ilsa_mesh_def *old = &c->s->mesh;
     int odd_x = old->nx % 2, odd_y = old->ny % 2, found = 0;
     int first_x = covered(old->nx, i).first + odd_x, first_y = covered(old->ny, j).first + odd_y;
     double sum = 0;
     for (int b = first_y; b < first_y + 2 - odd_y; b++) {
+        double row = 0;
         for (int a = first_x; a < first_x + 2 - odd_x; a++) {
-            if (on_mesh(old, a, b) && isfinite(field[b * old->nx + a])) {
-                sum += field[b * old->nx + a];
-                found++;
-            }
+            double here = value(c, a, b);
+            row += isfinite(here) ? here : 0;
+            found += isfinite(here);
         }
+        sum += row;
     }
     return found > 0 ? sum / found : INFINITY;
+}
+
+/* How far into the channel distances are measured anew. */
+static double depth(const ilsa_solver *s) {
+    return 2 * ILSAI_COARSEN_REACH * hypot(s->mesh.dx, s->mesh.dy);
 }
 
 /*
@@ -108,20 +151,34 @@ static ilsa_status measure_inwards(ilsa_solver *s) {
             }
         }
     }
-    double limit = 2 * ILSAI_COARSEN_REACH * hypot(g.dx, g.dy);
     ilsa_status status =
-        ilsai_front_march(s->march, &g, &region, s->trial.kind, seeds, count, limit, s->gain);
+        ilsai_front_march(s->march, &g, &region, s->trial.kind, seeds, count, depth(s), s->gain);
     free(seeds);
     return status;
 }
 
-/* Levels and speeds with the inward march in place of what the channel's last were. */
+/* When the front has passed the centre of a cell, or will at its present speed. */
+static double passing(const ilsa_solver *s, size_t cell) {
+    double level = s->field.level[cell], V = s->field.speed[cell];
+    return isfinite(s->field.trigger[cell]) ? s->field.trigger[cell]
+           : level > 0 && V > 0             ? s->now.time + level / V
+                                            : INFINITY;
+}
+
+/*
+ * Levels and speeds with the inward march in place of what the channel's last were, which are of
+ * any age; cells that it did not reach lie deep in the channel.
+ */
 static void level_all(ilsa_solver *s) {
     int count;
     const front_cell *cells = ilsai_front_cells(s->march, &count);
-    size_t size = ilsai_mesh_cells(&s->mesh) * sizeof(double);
-    memcpy(s->trial.level, s->field.level, size);
-    memcpy(s->trial.speed, s->field.speed, size);
+    size_t all = ilsai_mesh_cells(&s->mesh);
+    memcpy(s->trial.speed, s->field.speed, all * sizeof(double));
+    for (size_t k = 0; k < all; k++) {
+        int channel = s->field.kind[k] == ILSA_CELL_CHANNEL;
+        s->trial.level[k] = channel ? -depth(s) : s->field.level[k];
+        s->leak[k] = ilsai_has_leakoff(s) ? passing(s, k) : 0;
+    }
     for (int k = 0; k < count; k++) {
         s->trial.level[cells[k].cell] = -cells[k].T;
         s->trial.speed[cells[k].cell] = cells[k].V;
@@ -213,10 +270,11 @@ static void sample(coarse *c, const box *b) {
     for (int j = b->y0; j <= b->y1; j++) {
         for (int i = b->x0; i <= b->x1; i++) {
             int cell = j * c->mesh.nx + i;
-            c->field.level[cell] = at_centre(c, c->s->trial.level, i, j);
-            c->field.speed[cell] = at_centre(c, c->s->trial.speed, i, j);
+            c->field.level[cell] = at_centre(c, old_level, i, j);
+            double V = at_centre(c, old_speed, i, j);
+            c->field.speed[cell] = isfinite(V) ? V : 0; /* beyond the old mesh */
             if (c->field.trigger) {
-                double t = at_centre(c, c->s->field.trigger, i, j);
+                double t = fmin(at_centre(c, old_passing, i, j), c->s->now.time);
                 c->field.trigger[cell] = c->field.level[cell] <= 0 ? t : INFINITY;
             }
         }

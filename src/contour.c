@@ -118,12 +118,12 @@ static unsigned char *side_flag(const tracer *t, int i, int j, int side) {
 
 /*
  * The side by which a walk with the fluid on its left leaves a square. Entering by a side, the
- * sides are tried from the one on the right hand on, which keeps fluid that touches at a corner
+ * sides are tried from the one on the left hand on, which keeps fluid that touches at a corner
  * apart.
  */
 static int exit_side(const tracer *t, int i, int j, int entry) {
     static const int corner[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
-    for (int turn = 1; turn < 4; turn++) {
+    for (int turn = 3; turn > 0; turn--) {
         int side = (entry + turn) % 4;
         const int *from = corner[side], *to = corner[(side + 1) % 4];
         if (!inside(t, i + from[0], j + from[1]) && inside(t, i + to[0], j + to[1])) {

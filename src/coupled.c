@@ -213,6 +213,7 @@ static double error_left(double change, int dense) {
 static ilsa_status newton(coupled *c, const coupled_problem *problem, coupled_counts *counts) {
     int dense = choose_dense(c, problem);
     ilsa_status status = dense ? ilsai_jacobian_set_influence(&c->matrix) : ILSA_OK;
+    c->factored_count = dense ? 0 : c->factored_count;
     double length = 1;
     for (int iteration = 0; iteration < ILSAI_NEWTON_MAX && status == ILSA_OK; iteration++) {
         ilsai_coupled_pressure(c, problem, counts);

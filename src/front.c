@@ -4,6 +4,9 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* Components of a normal up to which the front runs along the axis: rounding must not decide. */
+#define FRONT_ALONG 1e-9
+
 /* A cell's value as seen by its neighbours while the march goes on. */
 typedef struct node {
     double T, V, K_num, K_den, curvature;
@@ -181,7 +184,7 @@ static int plane(node *n, double a, double b, double dx, double dy) {
     n->T = wx * a + wy * b + dx * dy * sqrt(root) / diagonal;
     n->cos_a = (n->T - a) / dx;
     n->sin_a = (n->T - b) / dy;
-    return n->cos_a > 0 && n->sin_a > 0;
+    return n->cos_a > FRONT_ALONG && n->sin_a > FRONT_ALONG;
 }
 
 /*

@@ -58,21 +58,25 @@ ilsa_status ilsai_solver_fill_stress(ilsa_solver *s) {
     return status;
 }
 
-/* Whether every source has an image of the same rate. */
-static int sources_mirror(const ilsa_solver *s, int about_x) {
+/* How many sources of the rate of a stand at (x, y). */
+static int sources_like(const ilsa_solver *s, const ilsa_source_def *a, double x, double y) {
+    int count = 0;
     for (int k = 0; k < s->def.source_count; k++) {
-        const ilsa_source_def *a = &s->sources[k].def;
-        int found = 0;
-        for (int m = 0; m < s->def.source_count && !found; m++) {
-            const ilsa_source_def *b = &s->sources[m].def;
-            found = a->rate == b->rate && b->x == (about_x ? -a->x : a->x) &&
-                    b->y == (about_x ? a->y : -a->y);
-        }
-        if (!found) {
-            return 0;
-        }
+        const ilsa_source_def *b = &s->sources[k].def;
+        count += b->rate == a->rate && b->x == x && b->y == y;
     }
-    return 1;
+    return count;
+}
+
+/* Whether every source has an image of the same rate; sources may share a place. */
+static int sources_mirror(const ilsa_solver *s, int about_x) {
+    int mirror = 1;
+    for (int k = 0; k < s->def.source_count && mirror; k++) {
+        const ilsa_source_def *a = &s->sources[k].def;
+        double x = about_x ? -a->x : a->x, y = about_x ? a->y : -a->y;
+        mirror = sources_like(s, a, x, y) == sources_like(s, a, a->x, a->y);
+    }
+    return mirror;
 }
 
 static int wants_mirror(const ilsa_solver *s, int about_x) {

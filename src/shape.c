@@ -146,11 +146,11 @@ static int try_inner(const ilsa_solver *s, front_seed *seed, int i, int j, vecto
  * that deep, else the next one. The width follows the tip's only where the stress does not jump.
  */
 static void find_inner(const ilsa_solver *s, front_seed *seed, int i, int j, vector n) {
-    int di = fabs(n.x) > ILSAI_SHAPE_DIAGONAL ? (n.x > 0 ? -1 : 1) : 0;
-    int dj = fabs(n.y) > ILSAI_SHAPE_DIAGONAL ? (n.y > 0 ? -1 : 1) : 0;
+    double cell = s->mesh.dx * fabs(n.x) + s->mesh.dy * fabs(n.y);
+    double di = -n.x * cell / s->mesh.dx, dj = -n.y * cell / s->mesh.dy;
     seed->inner = -1;
-    if (!try_inner(s, seed, i, j, n, 2 * di, 2 * dj, ILSA_CELL_CHANNEL)) {
-        try_inner(s, seed, i, j, n, di, dj, ILSA_CELL_SURVEY);
+    if (!try_inner(s, seed, i, j, n, (int)lround(2 * di), (int)lround(2 * dj), ILSA_CELL_CHANNEL)) {
+        try_inner(s, seed, i, j, n, (int)lround(di), (int)lround(dj), ILSA_CELL_SURVEY);
     }
 }
 

@@ -3,6 +3,7 @@
 #include <ilsa/snapshot.h>
 
 #include "state.h"
+#include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -83,12 +84,14 @@ static identity identify(const ilsa_solver *s) {
     return id;
 }
 
-/* The same definition, whatever the cell size has become; the shape of a cell never changes. */
+/* The same definition, however often either has been coarsened, which doubles dx and dy. */
 static int same_definition(const identity *a, const identity *b) {
     identity like = *a;
+    int times;
     like.dx = b->dx;
     like.dy = b->dy;
-    return memcmp(&like, b, sizeof like) == 0 && a->dx * b->dy == b->dx * a->dy;
+    return memcmp(&like, b, sizeof like) == 0 && frexp(a->dx / b->dx, &times) == 0.5 &&
+           a->dx / b->dx == a->dy / b->dy;
 }
 
 static void pass_state(stream *io, state *now) {
@@ -165,8 +168,8 @@ static void write_body(stream *io, const ilsa_solver *s) {
     pass(io, &id, sizeof id);
     pass_state(io, &now);
     for (int k = 0; k < s->def.source_count; k++) {
-        double rate = s->sources[k].def.rate;
-        pass(io, &rate, sizeof rate);
+        ilsa_source_def def = s->sources[k].def;
+        pass(io, &def, sizeof def);
     }
     write_stress(io, s);
     pass(io, &tips, sizeof tips);
@@ -234,15 +237,32 @@ static ilsa_status check_header(ilsa_solver *s, const unsigned char *image, size
 typedef struct incoming {
     state now;
     ilsa_mesh_def mesh;
-    double *rates;
+    ilsa_source_def *sources;
     ilsa_stress *stress;
     tip_records tips;
 } incoming;
 
 static void release(incoming *from) {
-    free(from->rates);
+    free(from->sources);
     ilsa_stress_destroy(&from->stress);
     free(from->tips.at);
+}
+
+/* Rates change, places do not. */
+static ilsa_status read_sources(stream *io, const ilsa_solver *s, incoming *from) {
+    size_t size = (size_t)s->def.source_count * sizeof *from->sources;
+    from->sources = malloc(size);
+    if (!from->sources) {
+        return ILSA_ERR_MEMORY;
+    }
+    pass(io, from->sources, size);
+    for (int k = 0; k < s->def.source_count && !io->failed; k++) {
+        const ilsa_source_def *own = &s->sources[k].def;
+        if (from->sources[k].x != own->x || from->sources[k].y != own->y) {
+            return ILSA_ERR_MISMATCH;
+        }
+    }
+    return ILSA_OK;
 }
 
 static ilsa_status read_stress(stream *io, incoming *from) {
@@ -298,12 +318,8 @@ static ilsa_status read_head(stream *io, const ilsa_solver *s, incoming *from) {
     if (io->failed || !from->now.started || !box_on_mesh(s, &from->now.footprint)) {
         return ILSA_ERR_SNAPSHOT;
     }
-    from->rates = malloc((size_t)s->def.source_count * sizeof(double));
-    if (!from->rates) {
-        return ILSA_ERR_MEMORY;
-    }
-    pass(io, from->rates, (size_t)s->def.source_count * sizeof(double));
-    ilsa_status status = read_stress(io, from);
+    ilsa_status status = read_sources(io, s, from);
+    status = status ? status : read_stress(io, from);
     return status ? status : read_tips(io, s, from);
 }
 
@@ -341,7 +357,7 @@ static void adopt(ilsa_solver *s, incoming *from, elasticity *e, stream *io) {
     from->stress = stress;
     from->tips = tips;
     for (int k = 0; k < s->def.source_count; k++) {
-        s->sources[k].def.rate = from->rates[k];
+        s->sources[k].def.rate = from->sources[k].rate;
     }
     ilsai_sources_place(s);
     box region = ilsai_solver_region(s, &s->now.footprint);

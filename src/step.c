@@ -125,6 +125,25 @@ static ilsa_status march(ilsa_solver *s, double dt, int hold) {
     return status == ILSA_OK ? ilsai_rim_set(s, dt, hold) : status;
 }
 
+/* Advance of the front in cells; a front at its bound has been held back by it. */
+static double advance(const ilsa_solver *s) {
+    double largest = 0;
+    for (int k = 0; k < s->seed_count; k++) {
+        double cells = (s->seeds[k].s - s->seeds[k].s0) / s->seeds[k].h;
+        largest = cells > largest ? cells : largest;
+    }
+    return largest;
+}
+
+/*
+ * Tolerance of the front in cells. It shrinks with a step that moves the front less than the usual,
+ * so that the velocity is found as well, down to what rounding leaves.
+ */
+static double tolerance_now(const ilsa_solver *s, int pass) {
+    double usual = pass < ILSAI_SETTLE_PASS ? s->tolerance : fmax(s->tolerance, ILSAI_SETTLE);
+    return fmax(usual * fmin(1, advance(s) / s->step_cells), ILSAI_TOLERANCE_LEAST);
+}
+
 static coupled_problem pose(ilsa_solver *s, double dt, int pass, double change) {
     coupled_problem problem = {.g = &s->g,
                                .e = s->elastic,
@@ -141,8 +160,8 @@ static coupled_problem pose(ilsa_solver *s, double dt, int pass, double change) 
                                .response = s->responses,
                                .response_count = s->response_count,
                                .fresh = pass == 0};
-    double aim = 0.3 * change > s->tolerance ? 0.3 * change : s->tolerance;
-    problem.tolerance = ILSAI_WIDTH_TOLERANCE * (aim < 0.1 ? aim : 0.1);
+    double aim = fmax(0.3 * change, tolerance_now(s, 0));
+    problem.tolerance = ILSAI_WIDTH_TOLERANCE * fmin(aim, 0.1);
     return problem;
 }
 
@@ -206,23 +225,13 @@ static ilsa_status iterate(ilsa_solver *s, double dt, coupled_counts *counts, il
         if (isnan(*change)) {
             return ILSA_STEP_REJECTED;
         }
-        if (*change <= s->tolerance) {
+        if (*change <= tolerance_now(s, pass)) {
             ilsai_coupled_pressure(s->flow, &problem, counts);
             return ILSA_OK;
         }
         move_front(s, pass);
     }
     return ILSA_STEP_REJECTED;
-}
-
-/* Advance of the front in cells; a front at its bound has been held back by it. */
-static double advance(const ilsa_solver *s) {
-    double largest = 0;
-    for (int k = 0; k < s->seed_count; k++) {
-        double cells = (s->seeds[k].s - s->seeds[k].s0) / s->seeds[k].h;
-        largest = cells > largest ? cells : largest;
-    }
-    return largest;
 }
 
 typedef struct volumes {

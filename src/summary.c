@@ -23,8 +23,9 @@ ilsa_status ilsa_get_time(const ilsa_solver *solver, double *time) {
     return status;
 }
 
-static ilsa_status get_field(const ilsa_solver *s, const double *field, const double **out) {
-    ilsa_status status = readable(s, out, "field");
+static ilsa_status get_field(const ilsa_solver *s, const double *field, const char *name,
+                             const double **out) {
+    ilsa_status status = readable(s, out, name);
     if (status == ILSA_OK) {
         *out = field;
     }
@@ -32,19 +33,19 @@ static ilsa_status get_field(const ilsa_solver *s, const double *field, const do
 }
 
 ilsa_status ilsa_get_width(const ilsa_solver *solver, const double **width) {
-    return get_field(solver, solver ? solver->field.width : NULL, width);
+    return get_field(solver, solver ? solver->field.width : NULL, "width", width);
 }
 
 ilsa_status ilsa_get_pressure(const ilsa_solver *solver, const double **pressure) {
-    return get_field(solver, solver ? solver->field.pressure : NULL, pressure);
+    return get_field(solver, solver ? solver->field.pressure : NULL, "pressure", pressure);
 }
 
 ilsa_status ilsa_get_stress(const ilsa_solver *solver, const double **stress) {
-    return get_field(solver, solver ? solver->sigma : NULL, stress);
+    return get_field(solver, solver ? solver->sigma : NULL, "stress", stress);
 }
 
 ilsa_status ilsa_get_trigger_time(const ilsa_solver *solver, const double **trigger) {
-    return get_field(solver, solver ? solver->field.trigger : NULL, trigger);
+    return get_field(solver, solver ? solver->field.trigger : NULL, "trigger", trigger);
 }
 
 ilsa_status ilsa_get_footprint(const ilsa_solver *solver, const unsigned char **kind) {

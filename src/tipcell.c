@@ -1,6 +1,10 @@
 #include "tipcell.h"
 
 #include <math.h>
+
+/* Change of velocity that counts, and the width of the passage about it. */
+#define TIPCELL_VARIED 0.2
+#define TIPCELL_BLEND  0.1
 #include <stddef.h>
 
 /*
@@ -82,15 +86,16 @@ static double knot_weight(const double t[3], const double ell[3]) {
     return fabs((t[1] - t[0]) * (ell[2] - ell[0]) - (t[2] - t[0]) * (ell[1] - ell[0]));
 }
 
-/* Drops the inner knot whose loss changes the path least, the new one taken for the last. */
-static void history_drop(tipcell_history *history, double t, double ell) {
+/*
+ * Drops the inner knot whose loss changes the path least. The last one stays: whether it is
+ * straight on depends on the knot to come, which an iteration moves, and the choice must not move
+ * with it.
+ */
+static void history_drop(tipcell_history *history) {
     int least = 1;
     double least_weight = HUGE_VAL;
-    for (int k = 1; k < history->count; k++) {
-        const int n = k + 1 < history->count;
-        const double weight = knot_weight(
-            (double[]){history->t[k - 1], history->t[k], n ? history->t[k + 1] : t},
-            (double[]){history->ell[k - 1], history->ell[k], n ? history->ell[k + 1] : ell});
+    for (int k = 1; k < history->count - 1; k++) {
+        const double weight = knot_weight(&history->t[k - 1], &history->ell[k - 1]);
         if (weight < least_weight) {
             least_weight = weight;
             least = k;
@@ -106,7 +111,7 @@ static void history_drop(tipcell_history *history, double t, double ell) {
 void ilsai_tipcell_record(tipcell_history *history, double t, double ell) {
     ell = fmax(ell, history->ell[history->count - 1]);
     if (history->count == TIPCELL_KNOTS)
-        history_drop(history, t, ell);
+        history_drop(history);
     history->t[history->count] = t;
     history->ell[history->count] = ell;
     history->count++;
@@ -161,16 +166,28 @@ double ilsai_tipcell_leakoff_path(double C_prime, const tipcell_front *front, in
     return 2.0 * C_prime * sum;
 }
 
+/* How far the velocity's change decides for the history: 0 to 1 around 20 %. */
+static double variation(const tipcell_history *history) {
+    const int n = history->count;
+    const double *t = history->t, *ell = history->ell;
+    const double first = (ell[1] - ell[0]) / (t[1] - t[0]);
+    const double last = (ell[n - 1] - ell[n - 2]) / (t[n - 1] - t[n - 2]);
+    const double change = fabs(last - first) - (TIPCELL_VARIED - 0.5 * TIPCELL_BLEND) * first;
+    return first > 0 ? fmin(1, fmax(0, change / (TIPCELL_BLEND * first))) : 1;
+}
+
 double ilsai_tipcell_leakoff(double C_prime, const tipcell_front *front,
                              const tipcell_history *history) {
     const int n = history->count;
     const double *t = history->t, *ell = history->ell;
-    if (n > 2) {
-        const double first = (ell[1] - ell[0]) / (t[1] - t[0]);
-        const double last = (ell[n - 1] - ell[n - 2]) / (t[n - 1] - t[n - 2]);
-        if (fabs(last - first) <= 0.2 * first)
-            return ilsai_tipcell_leakoff_path(C_prime, front, 2, (double[]){t[0], t[n - 1]},
-                                              (double[]){ell[0], ell[n - 1]});
+    const double varied = n > 2 ? variation(history) : 1;
+    double leaked = 0;
+    if (!(varied >= 1)) {
+        leaked = ilsai_tipcell_leakoff_path(C_prime, front, 2, (double[]){t[0], t[n - 1]},
+                                            (double[]){ell[0], ell[n - 1]});
     }
-    return ilsai_tipcell_leakoff_path(C_prime, front, n, t, ell);
+    if (!(varied <= 0)) {
+        leaked += varied * (ilsai_tipcell_leakoff_path(C_prime, front, n, t, ell) - leaked);
+    }
+    return leaked;
 }

@@ -48,8 +48,10 @@ void ilsai_tipcell_record(tipcell_history *history, double t, double ell);
 /*
  * Fluid leaked from the cell until the time of the last knot, >= 0, length^3 (minus (4.24)):
  * 2 C' times the integral of (t - t_0)^(1/2) over the wet part. The velocity counts as constant,
- * (4.21) and (4.23), where it has changed by no more than 20 % since the front entered the cell
- * (first against last segment of the history); otherwise the history is used, (4.20) and (4.22).
+ * (4.21) and (4.23), where it has changed by less than 20 % since the front entered the cell (first
+ * against last segment of the history); beyond that the history is used, (4.20) and (4.22). From 15
+ * to 25 % the one passes into the other: a jump would keep the iteration on the front from
+ * converging.
  */
 double ilsai_tipcell_leakoff(double C_prime, const tipcell_front *front,
                              const tipcell_history *history);

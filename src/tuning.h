@@ -23,6 +23,10 @@
 /* Front: from this pass on the cells at the front no longer answer within the Newton system, and
  * the distances are accelerated instead: a step that has not converged by then goes to and fro. */
 #define ILSAI_RESPONSE_PASSES 8
+/* Front: from this pass on a change of so many cells will do, if the tolerance is tighter: a cell
+ * that turns from tip to channel and back leaves no front that meets it. */
+#define ILSAI_SETTLE_PASS 16
+#define ILSAI_SETTLE      5e-3
 /* Front: step of the differences that tell how a cell at the front answers, in cells. */
 #define ILSAI_DIFFERENCE 1e-5
 /* Front: passes before a step is given up, and the memory of the Anderson acceleration. */
@@ -54,15 +58,13 @@
 /* Source: closer to a cell edge than this, in cells, it feeds the cells on both sides. */
 #define ILSAI_EDGE_CELLS 1e-9
 /* Shape of the front: how far along it a parabola is fitted, in cells; cosine above which normals
- * belong to the same stretch; largest curvature, per cell; component of the normal from which the
- * cell behind lies on the diagonal (sine of 22.5 degrees). */
+ * belong to the same stretch; largest curvature, per cell. */
 #define ILSAI_SHAPE_REACH 3.5
 #define ILSAI_SHAPE_ALIKE 0.3
 /* Least number of points of such a fit, and how far to both sides they must go, as a part of it. */
 #define ILSAI_SHAPE_POINTS    4
 #define ILSAI_SHAPE_SPAN      0.4
 #define ILSAI_SHAPE_CURVATURE 0.5
-#define ILSAI_SHAPE_DIAGONAL  0.38268343236508977
 /* Survey: secant steps to the distance that agrees with the second term, the change in cells at
  * which they end, and the largest slope that they believe. */
 #define ILSAI_SURVEY_SECANTS 3
@@ -85,6 +87,8 @@
     { 1.0, 0.75, 0.5, 0.35, 0.25 }
 #define ILSAI_LEVEL_TOLERANCE                                                                      \
     { 1e-2, 3e-3, 1e-3, 3e-4, 1e-5 }
+/* Smallest tolerance of the front, in cells: rounding of a distance. */
+#define ILSAI_TOLERANCE_LEAST 1e-12
 /* Tolerance of the widths relative to that of the front: w changes half as much as s. */
 #define ILSAI_WIDTH_TOLERANCE 0.1
 

@@ -420,25 +420,48 @@ static void test_history_thinning(void **state) {
     assert_int_equal(corner, 1);
 }
 
-/* The choice between (4.20) and (4.21): a change of velocity of up to 20 % counts as none. */
+/* Leak-off with the velocity at the end `last` times that at the start; the two it is chosen from.
+ */
+static double leakoff_for(double last, double *straight, double *bent) {
+    const tipcell_front front = {0.9, 0.8, 0.6, 1.0, 1.0};
+    tipcell_history history;
+    ilsai_tipcell_enter(&history, 0.0);
+    ilsai_tipcell_record(&history, 0.5, 0.5);
+    ilsai_tipcell_record(&history, 0.9, 0.5 + 0.4 * last);
+    const double end[2] = {0.0, history.ell[2]}, time[2] = {0.0, 0.9};
+    *straight = ilsai_tipcell_leakoff_path(1.0, &front, 2, time, end);
+    *bent = ilsai_tipcell_leakoff_path(1.0, &front, 3, history.t, history.ell);
+    return ilsai_tipcell_leakoff(1.0, &front, &history);
+}
+
+/* The choice between (4.20) and (4.21): constant velocity below 15 %, the history above 25 %. */
 static void test_velocity_switch(void **state) {
     (void)state;
-    const tipcell_front front = {0.9, 0.8, 0.6, 1.0, 1.0};
-    for (int i = 0; i < 4; i++) {
-        const double last = (const double[]){0.79, 0.81, 1.19, 1.21}[i];
-        tipcell_history history;
-        ilsai_tipcell_enter(&history, 0.0);
-        ilsai_tipcell_record(&history, 0.5, 0.5);
-        ilsai_tipcell_record(&history, 0.9, 0.5 + 0.4 * last);
-        const double end[2] = {0.0, history.ell[2]}, time[2] = {0.0, 0.9};
-        const double straight = ilsai_tipcell_leakoff_path(1.0, &front, 2, time, end);
-        const double bent = ilsai_tipcell_leakoff_path(1.0, &front, 3, history.t, history.ell);
-        const int constant = i == 1 || i == 2;
-        assert_true(straight != bent);
-        assert_true(ilsai_tipcell_leakoff(1.0, &front, &history) == (constant ? straight : bent));
+    for (int i = 0; i < 6; i++) {
+        const double last = (const double[]){0.74, 0.8, 0.86, 1.14, 1.2, 1.26}[i];
+        double straight, bent, chosen = leakoff_for(last, &straight, &bent);
         print_message("velocity changes to %.2f: constant velocity instead of the history %+.2g\n",
                       last, straight / bent - 1.0);
+        if (i == 2 || i == 3) {
+            assert_true(chosen == straight && chosen != bent);
+        } else if (i == 0 || i == 5) {
+            assert_true(chosen == bent && chosen != straight);
+        } else {
+            assert_below(relative(chosen, 0.5 * (straight + bent)), 1e-12);
+        }
     }
+}
+
+/* The choice has no jump, which the iteration on the front could not get across. */
+static void test_velocity_switch_is_continuous(void **state) {
+    (void)state;
+    double a, b, before = leakoff_for(0.5, &a, &b), largest = 0.0;
+    for (int k = 1; k <= 1000; k++) {
+        const double now = leakoff_for(0.5 + 0.001 * k, &a, &b);
+        largest = fmax(largest, fabs(now - before));
+        before = now;
+    }
+    assert_below(largest, 0.002 * before);
 }
 
 int main(void) {
@@ -459,6 +482,7 @@ int main(void) {
         cmocka_unit_test(test_history_entry),
         cmocka_unit_test(test_history_thinning),
         cmocka_unit_test(test_velocity_switch),
+        cmocka_unit_test(test_velocity_switch_is_continuous),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
