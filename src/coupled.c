@@ -189,7 +189,9 @@ static double take_step(const coupled *c, const coupled_problem *problem, double
         sum += delta;
         c->shift[k] += length * ilsai_jacobian_tip_gain(&c->matrix, k, c->step);
         if (c->cells.tip[k]) {
-            problem->width[cell] += length * ilsai_jacobian_tip_width(&c->matrix, k, c->step);
+            double w = problem->width[cell];
+            double answer = length * ilsai_jacobian_tip_width(&c->matrix, k, c->step);
+            problem->width[cell] = fmax(w + answer, (1 - ILSAI_WIDTH_DROP) * w);
             problem->pressure[cell] += delta;
         } else {
             problem->width[cell] += delta;
@@ -253,7 +255,10 @@ static ilsa_status find_responses(coupled *c, const coupled_problem *problem) {
         c->shift[k] = 0;
     }
     for (int r = 0; r < problem->response_count; r++) {
-        c->matrix.response_of[c->cells.slot[problem->response[r].cell]] = r;
+        int k = c->cells.slot[problem->response[r].cell];
+        if (k >= 0) {
+            c->matrix.response_of[k] = r;
+        }
     }
     return ILSA_OK;
 }

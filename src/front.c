@@ -287,7 +287,7 @@ static ilsa_status add_seed(front *f, const grid *g, const front_seed *seeds, in
         return ILSA_ERR_MEMORY;
     }
     node n = {.T = -seed->s, .V = seed->V, .K_den = seed->s, .cell = seed->cell, .place = -1};
-    n.K_num = seed->w * sqrt(seed->s);
+    n.K_num = seed->w * sqrt(fabs(seed->s));
     n.curvature = seed->curvature;
     n.from = (front_parents){.count = 1, .seed = {k}, .weight = {1}};
     *slot = f->node_count;
@@ -363,7 +363,8 @@ ilsa_status ilsai_front_march(front *f, const grid *g, const box *region, const 
         level[seeds[k].cell] = -seeds[k].s;
     }
     for (int k = 0; k < seed_count && status == ILSA_OK; k++) {
-        status = touch_all(f, g, kind, seeds[k].cell);
+        const int *slot = node_slot(f, g, seeds[k].cell);
+        status = slot ? touch_all(f, g, kind, seeds[k].cell) : ILSA_OK;
     }
     while (status == ILSA_OK && f->heap_count > 0) {
         node n = f->nodes[pop(f)];

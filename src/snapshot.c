@@ -250,8 +250,8 @@ static void release(incoming *from) {
 
 /* Rates change, places do not. */
 static ilsa_status read_sources(stream *io, const ilsa_solver *s, incoming *from) {
-    size_t size = (size_t)s->def.source_count * sizeof *from->sources;
-    from->sources = malloc(size);
+    size_t count = (size_t)s->def.source_count, size = count * sizeof *from->sources;
+    from->sources = calloc(count, sizeof *from->sources);
     if (!from->sources) {
         return ILSA_ERR_MEMORY;
     }
