@@ -53,7 +53,7 @@
 /* Time: longest step where the front stands still, as a part of the time so far. */
 #define ILSAI_DT_RESTING 0.1
 /* Time: smallest step relative to the time so far before an advance gives up. */
-#define ILSAI_DT_SMALLEST 1e-12
+#define ILSAI_DT_SMALLEST 1e-9
 
 /* Source: closer to a cell edge than this, in cells, it feeds the cells on both sides. */
 #define ILSAI_EDGE_CELLS 1e-9

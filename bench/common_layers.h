@@ -1,0 +1,36 @@
+/* The scenes of examples/scenes, as tables: each run through the public interface alone. */
+#ifndef BENCH_COMMON_LAYERS_H
+#define BENCH_COMMON_LAYERS_H
+
+#include <ilsa/ilsa.h>
+
+/* Section 5.2: SI units, layers of 20 m height, rate 0.01 m^3/s, penny of 5 m to begin with. */
+typedef struct layer_scene {
+    const char *name;
+    double sigma[3]; /* bottom, middle, top */
+    double C_prime;
+    int nx, ny; /* at H/21 */
+} layer_scene;
+
+enum { LAYER_SCENES = 9, LAYER_TIMES = 5 };
+extern const layer_scene layer_scenes[LAYER_SCENES];
+extern const double layer_times[LAYER_TIMES];
+
+/*
+ * A solver that is started, on cells of H / cells, in the same window as at H/21; counts even where
+ * cells is even, so that the interfaces lie on cell edges. NULL and a message on stderr if it
+ * fails.
+ */
+ilsa_solver *layer_start(const layer_scene *scene, int cells);
+
+/* Section 5.1, Figs. 4 and 5: E' = mu' = K' = Q = 1, 41 x 41 cells, a penny of 5 cells. */
+typedef struct fig_scene {
+    const char *name;
+    double C_prime, dx, time;
+} fig_scene;
+
+enum { FIG_SCENES = 7 };
+extern const fig_scene fig_scenes[FIG_SCENES];
+ilsa_solver *fig_start(const fig_scene *scene);
+
+#endif
