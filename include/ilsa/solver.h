@@ -50,19 +50,19 @@ typedef enum ilsa_product {
 } ilsa_product;
 
 typedef struct ilsa_solver_def {
-    const ilsa_mesh *mesh;         /* required */
-    const ilsa_material *material; /* required */
-    const ilsa_stress *stress;     /* NULL: zero stress */
+    const ilsa_mesh *mesh;          /* required */
+    const ilsa_material *material;  /* required */
+    const ilsa_stress *stress;      /* NULL: zero stress */
     const ilsa_source_def *sources; /* source_count of them, required */
-    int source_count;              /* 1 .. 1000; default 0 */
-    int level;                     /* 1 fast .. 5 accurate; default 3 */
-    ilsa_symmetry symmetry;        /* default ILSA_SYMMETRY_AUTO */
-    ilsa_linear_solver linear;     /* default ILSA_LINEAR_AUTO */
-    ilsa_product product;          /* default ILSA_PRODUCT_AUTO */
-    int coarsen;                   /* 1: ilsa_advance coarsens the mesh at its edge; default 0 */
-    double step_cells;             /* front advance of a suggested step, in cells, 0.01 .. 1; 0: level */
-    double tolerance;              /* of the front, in cells, 1e-12 .. 0.1; 0: by level */
-    double dt_max;                 /* longest suggested step, time, > 0; 0: no limit */
+    int source_count;               /* 1 .. 1000; default 0 */
+    int level;                      /* 1 fast .. 5 accurate; default 3 */
+    ilsa_symmetry symmetry;         /* default ILSA_SYMMETRY_AUTO */
+    ilsa_linear_solver linear;      /* default ILSA_LINEAR_AUTO */
+    ilsa_product product;           /* default ILSA_PRODUCT_AUTO */
+    int coarsen;                    /* 1: ilsa_advance coarsens the mesh at its edge; default 0 */
+    double step_cells; /* front advance of a suggested step, in cells, 0.01 .. 1; 0: level */
+    double tolerance;  /* of the front, in cells, 1e-12 .. 0.1; 0: by level */
+    double dt_max;     /* longest suggested step, time, > 0; 0: no limit */
 } ilsa_solver_def;
 
 /* A definition with the defaults above; mesh, material and sources must be given. */
@@ -81,8 +81,9 @@ ILSA_API void ilsa_solver_destroy(ilsa_solver **solver);
 
 /*
  * What went wrong in the last call that failed on this solver, naming the argument and its value;
- * "" when none has. Valid until the next call. NULL gives the message of the last failed
- * create of the calling thread (mesh, material, stress or solver).
+ * "" when none has. Valid until the next call. NULL gives the message of the last call of this
+ * thread that failed with no solver to keep it: a create, a call on a mesh, material or stress, and
+ * every call that takes a const solver (it only reads) or NULL for one.
  */
 ILSA_API const char *ilsa_last_error(const ilsa_solver *solver);
 
@@ -213,12 +214,12 @@ typedef struct ilsa_summary {
     double time;
     double x_min, x_max, y_min, y_max; /* where the front crosses the lines through source 0 */
     double extent_x_min, extent_x_max, extent_y_min, extent_y_max; /* of the whole footprint */
-    double width_source, pressure_source; /* in the cell of source 0 */
+    double width_source, pressure_source;                          /* in the cell of source 0 */
     double volume_injected, volume_fracture, volume_leaked;
-    double efficiency; /* volume_fracture / volume_injected */
-    double V_max;      /* fastest point of the front */
+    double efficiency;                                  /* volume_fracture / volume_injected */
+    double V_max;                                       /* fastest point of the front */
     int cells, tip_cells, survey_cells, arrested_cells; /* survey cells at rest: V = 0 */
-    int unknowns;      /* of the last step: after symmetry */
+    int unknowns;                                       /* of the last step: after symmetry */
     ilsa_report total; /* since the start; seconds, steps and iterations summed */
 } ilsa_summary;
 
