@@ -8,6 +8,10 @@ scripts=$(dirname "$0")/figures
 [ $# -gt 0 ] || { echo "usage: figures.sh DIR..." >&2; exit 2; }
 command -v gnuplot >/dev/null || { echo "figures.sh: gnuplot is not installed: make deps" >&2; exit 1; }
 
+# gnuplot warns of signs beyond ASCII where the locale is the bare one of a new machine.
+LC_ALL=C.UTF-8
+export LC_ALL
+
 for run; do
     [ -f "$run/plot.gp" ] || { echo "figures.sh: $run/plot.gp is missing: no run of ilsa-run" >&2; exit 1; }
     for figure in footprint triangle lines history; do

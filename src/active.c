@@ -89,7 +89,7 @@ static void find_neighbours(active *a, const grid *g) {
 ilsa_status ilsai_active_set(active *a, const grid *g, const box *footprint,
                              const unsigned char *kind) {
     box part = ilsai_box_fold(g, footprint);
-    size_t size = (size_t)(part.x1 - part.x0 + 1) * (size_t)(part.y1 - part.y0 + 1);
+    size_t size = ilsai_box_columns(&part) * ilsai_box_rows(&part);
     forget(a);
     if (reserve(a, size) != ILSA_OK) {
         return ILSA_ERR_MEMORY;

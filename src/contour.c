@@ -27,7 +27,7 @@ static int inside(const tracer *t, int i, int j) {
 }
 
 static unsigned char *edge_flag(const tracer *t, int i, int j, int along_y) {
-    size_t row = (size_t)(t->squares.x1 - t->squares.x0 + 2);
+    size_t row = ilsai_box_columns(&t->squares) + 1;
     size_t at = (size_t)(j - t->squares.y0) * row + (size_t)(i - t->squares.x0);
     return &t->on[2 * at + (size_t)along_y];
 }

@@ -58,7 +58,7 @@ void ilsai_fields_clear(fields *f, size_t count) {
 
 void ilsai_fields_clear_box(fields *f, const ilsa_mesh_def *mesh, const box *b) {
     for (int j = b->y0; j <= b->y1; j++) {
-        clear_range(f, (size_t)j * (size_t)mesh->nx + (size_t)b->x0, (size_t)(b->x1 - b->x0 + 1));
+        clear_range(f, (size_t)j * (size_t)mesh->nx + (size_t)b->x0, ilsai_box_columns(b));
     }
 }
 

@@ -66,8 +66,7 @@ static ilsa_status reserve_nodes(front *f, int count) {
 }
 
 static ilsa_status set_region(front *f, const box *region) {
-    size_t width = (size_t)(region->x1 - region->x0 + 1);
-    size_t size = width * (size_t)(region->y1 - region->y0 + 1);
+    size_t size = ilsai_box_columns(region) * ilsai_box_rows(region);
     if (size > f->region_capacity) {
         size_t capacity = size + size / 2;
         int *node_of = realloc(f->node_of, capacity * sizeof *node_of);

@@ -88,8 +88,13 @@ static inline double ilsai_grid_h(const grid *g) {
     return g->dx < g->dy ? g->dx : g->dy;
 }
 
-static inline int ilsai_box_empty(const box *b) {
-    return b->x1 < b->x0 || b->y1 < b->y0;
+/* Columns and rows of a box; 0 where it is empty. */
+static inline size_t ilsai_box_columns(const box *b) {
+    return b->x1 < b->x0 ? 0 : (size_t)b->x1 + 1 - (size_t)b->x0;
+}
+
+static inline size_t ilsai_box_rows(const box *b) {
+    return b->y1 < b->y0 ? 0 : (size_t)b->y1 + 1 - (size_t)b->y0;
 }
 
 static inline void ilsai_box_add(box *b, int i, int j) {

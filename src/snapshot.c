@@ -90,6 +90,8 @@ static int same_definition(const identity *a, const identity *b) {
     int times;
     like.dx = b->dx;
     like.dy = b->dy;
+    /* Copies of the same bits are meant, and every byte is defined. */
+    /* NOLINTNEXTLINE(bugprone-suspicious-memory-comparison,cert-exp42-c,cert-flp37-c) */
     return memcmp(&like, b, sizeof like) == 0 && frexp(a->dx / b->dx, &times) == 0.5 &&
            a->dx / b->dx == a->dy / b->dy;
 }

@@ -9,7 +9,7 @@ static ilsa_status readable(const ilsa_solver *s, const void *out, const char *n
     error_text *error = ilsai_thread_error();
     ilsa_status status = ilsai_check_pointer(error, "solver", s);
     status = status ? status : ilsai_check_pointer(error, name, out);
-    if (status == ILSA_OK && !s->now.started) {
+    if (status == ILSA_OK && s && !s->now.started) {
         status = ilsai_fail(error, ILSA_ERR_STATE, "no fracture yet: call ilsa_start_radial first");
     }
     return status;

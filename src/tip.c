@@ -379,7 +379,7 @@ tip_front ilsai_tip_distance(const tip_law *law, double w, double s0, double dt)
         return (tip_front){s0, 0.0, 0.0};
     p.gap = (1.0 - p.K0) * (1.0 + p.K0);
     p.xi_rate = p.K0 * p.K0 / p.gap;
-    tip_residual last;
+    tip_residual last = {0};
     const double x = solve(distance_residual, &p, distance_start(&p), &last);
     if (x <= X_LEAST) /* beyond the double range, both ways */
         return (tip_front){s0, 0.0, 0.0};

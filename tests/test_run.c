@@ -523,11 +523,11 @@ static void directory_cannot_be_made(void **state) {
     assert_string_equal(output, "ilsa-run: scene.ini: Not a directory\n");
 }
 
-/* On a terminal: time, step, percent, time left. script(1) makes one. */
+/* On a terminal: time, step, percent, time left. script(1) makes one, where it can. */
 static void progress_on_a_terminal(void **state) {
     (void)state;
     char command[4096];
-    if (program_run("command -v script", output, sizeof output) != 0)
+    if (program_run("script -qec true /dev/null </dev/null", output, sizeof output) != 0)
         skip();
     write_scene("t_end = 14\noutput_times = 11, 14\n", "t_end = 60\ncoarsen = yes\ndt_max = 0.2\n");
     snprintf(command, sizeof command, "script -qec '%s other.ini --out term' /dev/null </dev/null",
