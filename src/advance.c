@@ -1,52 +1,37 @@
-#include "advance.h"
-
 #include "clock.h"
 #include "step.h"
+#include "survey.h"
 #include "tuning.h"
 #include <math.h>
 
-static int open_face(const ilsa_solver *s, const grid *g, int i, int j, int face) {
-    int other = ilsai_grid_neighbour(g, i, j, face);
-    return other < 0 || s->field.kind[other] < ILSA_CELL_SURVEY;
-}
-
-double ilsai_front_rate(const ilsa_solver *s) {
+/* Front speed in cells per time, the fastest of the survey cells; 0 for a front at rest. */
+static double front_rate(const ilsa_solver *s) {
     grid g = ilsai_grid(&s->mesh, 0, 0);
     const box *b = &s->now.footprint;
     double largest = 0;
     for (int j = b->y0; j <= b->y1; j++) {
         for (int i = b->x0; i <= b->x1; i++) {
             int cell = ilsai_grid_cell(&g, i, j);
-            if (s->field.kind[cell] != ILSA_CELL_SURVEY) {
-                continue;
+            if (s->field.kind[cell] == ILSA_CELL_SURVEY) {
+                largest = fmax(largest, s->field.speed[cell] / ilsai_survey_size(s, &g, i, j));
             }
-            int along_x = open_face(s, &g, i, j, GRID_LEFT) || open_face(s, &g, i, j, GRID_RIGHT);
-            int along_y = open_face(s, &g, i, j, GRID_DOWN) || open_face(s, &g, i, j, GRID_UP);
-            double size = along_x && along_y ? ilsai_grid_h(&g) : along_x ? g.dx : g.dy;
-            largest = fmax(largest, s->field.speed[cell] / size);
         }
     }
     return largest;
 }
 
 static double suggestion(const ilsa_solver *s) {
-    double rate = ilsai_front_rate(s), resting = ILSAI_DT_RESTING * s->now.time;
+    double rate = front_rate(s), resting = ILSAI_DT_RESTING * s->now.time;
     double dt = rate * resting > s->step_cells ? s->step_cells / rate : resting;
     dt = fmin(dt, s->now.dt_limit);
     return s->def.dt_max > 0 ? fmin(dt, s->def.dt_max) : dt;
-}
-
-static ilsa_status check_started(const ilsa_solver *s, error_text *error) {
-    return s->now.started
-               ? ILSA_OK
-               : ilsai_fail(error, ILSA_ERR_STATE, "no fracture yet: call ilsa_start_radial first");
 }
 
 ilsa_status ilsa_suggest_dt(const ilsa_solver *solver, double *dt) {
     error_text *error = ilsai_thread_error();
     ilsa_status status = ilsai_check_pointer(error, "solver", solver);
     status = status ? status : ilsai_check_pointer(error, "dt", dt);
-    status = status ? status : check_started(solver, error);
+    status = status ? status : ilsai_check_started(solver, error);
     if (status == ILSA_OK) {
         *dt = suggestion(solver);
     }
@@ -103,7 +88,8 @@ static ilsa_status attempt(ilsa_solver *s, double dt, ilsa_report *report) {
 }
 
 static ilsa_status check_solver(ilsa_solver *s) {
-    return s ? check_started(s, &s->error) : ilsai_check_pointer(ilsai_thread_error(), "solver", s);
+    return s ? ilsai_check_started(s, &s->error)
+             : ilsai_check_pointer(ilsai_thread_error(), "solver", s);
 }
 
 ilsa_status ilsa_step(ilsa_solver *solver, double dt, ilsa_report *report) {

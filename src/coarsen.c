@@ -370,9 +370,9 @@ static void exchange(ilsa_solver *s, coarse *c) {
 }
 
 static ilsa_status check(ilsa_solver *s) {
-    if (!s->now.started) {
-        return ilsai_fail(&s->error, ILSA_ERR_STATE,
-                          "no fracture yet: call ilsa_start_radial first");
+    ilsa_status status = ilsai_check_started(s, &s->error);
+    if (status != ILSA_OK) {
+        return status;
     }
     const box *b = &s->now.footprint;
     int across = b->x1 - b->x0 < b->y1 - b->y0 ? b->x1 - b->x0 + 1 : b->y1 - b->y0 + 1;

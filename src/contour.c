@@ -209,13 +209,19 @@ static void longest_first(ilsa_front_point *points, size_t count) {
     }
 }
 
-ilsa_status ilsa_get_front(ilsa_solver *solver, const ilsa_front_point **points, size_t *count) {
-    error_text *error = solver ? &solver->error : ilsai_thread_error();
-    if (!solver || !points || !count) {
-        return ilsai_check_pointer(error, !solver ? "solver" : !points ? "points" : "count", NULL);
+/* The checks of the two calls that hand out a list. */
+static ilsa_status check_list(ilsa_solver *s, const void *points, const size_t *count) {
+    error_text *error = s ? &s->error : ilsai_thread_error();
+    if (!s || !points || !count) {
+        return ilsai_check_pointer(error, !s ? "solver" : !points ? "points" : "count", NULL);
     }
-    if (!solver->now.started) {
-        return ilsai_fail(error, ILSA_ERR_STATE, "no fracture yet: call ilsa_start_radial first");
+    return ilsai_check_started(s, error);
+}
+
+ilsa_status ilsa_get_front(ilsa_solver *solver, const ilsa_front_point **points, size_t *count) {
+    ilsa_status status = check_list(solver, points, count);
+    if (status != ILSA_OK) {
+        return status;
     }
     const box *b = &solver->now.footprint;
     tracer t = {.s = solver,
@@ -224,7 +230,7 @@ ilsa_status ilsa_get_front(ilsa_solver *solver, const ilsa_front_point **points,
                 .capacity = solver->front_capacity};
     size_t edges = 2 * (size_t)(b->x1 - b->x0 + 3) * (size_t)(b->y1 - b->y0 + 3);
     t.on = calloc(edges, 1);
-    ilsa_status status = t.on ? ILSA_OK : ILSA_ERR_MEMORY;
+    status = t.on ? ILSA_OK : ILSA_ERR_MEMORY;
     if (status == ILSA_OK) {
         mark(&t);
         status = trace(&t);
@@ -233,7 +239,7 @@ ilsa_status ilsa_get_front(ilsa_solver *solver, const ilsa_front_point **points,
     solver->front_points = t.points;
     solver->front_capacity = t.capacity;
     if (status != ILSA_OK) {
-        return ilsai_fail(error, status, "no memory for the front");
+        return ilsai_fail(&solver->error, status, "no memory for the front");
     }
     longest_first(t.points, t.count);
     *points = t.points;
@@ -265,18 +271,15 @@ static size_t count_survey(const ilsa_solver *s) {
 }
 
 ilsa_status ilsa_get_regime(ilsa_solver *solver, const ilsa_survey_point **points, size_t *count) {
-    error_text *error = solver ? &solver->error : ilsai_thread_error();
-    if (!solver || !points || !count) {
-        return ilsai_check_pointer(error, !solver ? "solver" : !points ? "points" : "count", NULL);
-    }
-    if (!solver->now.started) {
-        return ilsai_fail(error, ILSA_ERR_STATE, "no fracture yet: call ilsa_start_radial first");
+    ilsa_status status = check_list(solver, points, count);
+    if (status != ILSA_OK) {
+        return status;
     }
     size_t total = count_survey(solver), filled = 0;
     if (total > solver->survey_capacity) {
         ilsa_survey_point *fresh = realloc(solver->survey_points, 2 * total * sizeof *fresh);
         if (!fresh) {
-            return ilsai_fail(error, ILSA_ERR_MEMORY, "no memory for the survey cells");
+            return ilsai_fail(&solver->error, ILSA_ERR_MEMORY, "no memory for the survey cells");
         }
         solver->survey_points = fresh;
         solver->survey_capacity = 2 * total;

@@ -21,7 +21,6 @@ struct coupled {
     int factored_count, factored_capacity;
     int fresh_iterations, last_iterations; /* of GMRES: with the factors new, and lately */
     int response_capacity;
-    size_t mesh_cells;
 };
 
 coupled *ilsai_coupled_create(const ilsa_mesh_def *mesh) {
@@ -29,10 +28,10 @@ coupled *ilsai_coupled_create(const ilsa_mesh_def *mesh) {
     if (!c) {
         return NULL;
     }
-    c->mesh_cells = (size_t)mesh->nx * (size_t)mesh->ny;
+    size_t mesh_cells = (size_t)mesh->nx * (size_t)mesh->ny;
     c->krylov = ilsai_gmres_create(ILSAI_GMRES_RESTART);
-    c->matrix.width = calloc(c->mesh_cells, sizeof(double));
-    c->matrix.pressure = calloc(c->mesh_cells, sizeof(double));
+    c->matrix.width = calloc(mesh_cells, sizeof(double));
+    c->matrix.pressure = calloc(mesh_cells, sizeof(double));
     if (ilsai_active_create(&c->cells, mesh) != ILSA_OK || !c->krylov || !c->matrix.width ||
         !c->matrix.pressure) {
         ilsai_coupled_destroy(&c);

@@ -56,11 +56,4 @@ static inline int ilsai_mesh_locate(int n, double d, double x) {
     return i;
 }
 
-/* Index j * nx + i of the cell that holds (x, y); -1 outside the mesh and for NaN. */
-static inline int ilsai_mesh_cell(const ilsa_mesh_def *def, double x, double y) {
-    int i = ilsai_mesh_locate(def->nx, def->dx, x);
-    int j = ilsai_mesh_locate(def->ny, def->dy, y);
-    return i < 0 || j < 0 ? -1 : j * def->nx + i;
-}
-
 #endif

@@ -4,6 +4,12 @@
 
 #include <math.h>
 
+ilsa_status ilsai_check_started(const ilsa_solver *s, error_text *error) {
+    return s->now.started
+               ? ILSA_OK
+               : ilsai_fail(error, ILSA_ERR_STATE, "no fracture yet: call ilsa_start_radial first");
+}
+
 /* The one or two columns (rows) that hold a coordinate: two where it lies on their common edge. */
 static int columns_at(double x, double d, int n, int at[2]) {
     double u = x / d + 0.5 * n; /* in cells from the lower edge of the mesh */
@@ -14,8 +20,7 @@ static int columns_at(double x, double d, int n, int at[2]) {
         at[1] = (int)edge;
         return 2;
     }
-    int i = (int)floor(u);
-    at[0] = i < 0 ? 0 : i >= n ? n - 1 : i;
+    at[0] = ilsai_mesh_locate(n, d, x);
     return 1;
 }
 

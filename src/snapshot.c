@@ -186,9 +186,7 @@ ilsa_status ilsa_snapshot_save(const ilsa_solver *solver, void *buffer, size_t *
     error_text *error = ilsai_thread_error();
     ilsa_status status = ilsai_check_pointer(error, "solver", solver);
     status = status ? status : ilsai_check_pointer(error, "size", size);
-    if (status == ILSA_OK && !solver->now.started) {
-        status = ilsai_fail(error, ILSA_ERR_STATE, "no fracture yet: call ilsa_start_radial first");
-    }
+    status = status ? status : ilsai_check_started(solver, error);
     if (status != ILSA_OK) {
         return status;
     }

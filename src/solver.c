@@ -1,4 +1,3 @@
-#include "advance.h"
 #include "material.h"
 #include "start.h"
 #include "state.h"

@@ -111,6 +111,9 @@ ilsa_status ilsai_tip_records_reserve(tip_records *r, int count);
 const tip_record *ilsai_tip_records_find(const tip_records *r, int cell);
 void ilsai_tip_records_sort(tip_records *r);
 
+/* ILSA_ERR_STATE and a message unless a fracture has been started. */
+ilsa_status ilsai_check_started(const ilsa_solver *s, error_text *error);
+
 /* Cells and parts of every source on the mesh as it is now. */
 void ilsai_sources_place(ilsa_solver *s);
 

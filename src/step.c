@@ -13,17 +13,6 @@ static int is_channel(unsigned char kind) {
     return kind >= ILSA_CELL_SURVEY;
 }
 
-/* Cell size along the normal that a survey cell sees: of the faces that lead out of the channel. */
-static double seed_size(const ilsa_solver *s, int cell) {
-    int open[GRID_FACES];
-    for (int face = 0; face < GRID_FACES; face++) {
-        int other = ilsai_grid_neighbour(&s->g, cell % s->g.nx, cell / s->g.nx, face);
-        open[face] = other < 0 || !is_channel(s->field.kind[other]);
-    }
-    int along_x = open[GRID_LEFT] || open[GRID_RIGHT], along_y = open[GRID_DOWN] || open[GRID_UP];
-    return along_x && along_y ? ilsai_grid_h(&s->g) : along_x ? s->g.dx : s->g.dy;
-}
-
 static ilsa_status reserve_seeds(ilsa_solver *s, int count) {
     if (count <= s->seed_capacity) {
         return ILSA_OK;
@@ -56,7 +45,7 @@ static ilsa_status find_seeds(ilsa_solver *s) {
                 return ILSA_ERR_MEMORY;
             }
             front_seed seed = {.cell = cell, .s0 = -s->field.level[cell]};
-            seed.h = seed_size(s, cell);
+            seed.h = ilsai_survey_size(s, &s->g, i, j);
             seed.V = s->field.speed[cell];
             seed.w = s->field.width[cell];
             s->seeds[s->seed_count++] = seed;

@@ -1,5 +1,4 @@
 /* What a host reads off a solver: fields without a copy, and numbers for the whole fracture. */
-#include "advance.h"
 #include "state.h"
 
 #include <math.h>
@@ -9,10 +8,7 @@ static ilsa_status readable(const ilsa_solver *s, const void *out, const char *n
     error_text *error = ilsai_thread_error();
     ilsa_status status = ilsai_check_pointer(error, "solver", s);
     status = status ? status : ilsai_check_pointer(error, name, out);
-    if (status == ILSA_OK && s && !s->now.started) {
-        status = ilsai_fail(error, ILSA_ERR_STATE, "no fracture yet: call ilsa_start_radial first");
-    }
-    return status;
+    return status ? status : ilsai_check_started(s, error);
 }
 
 ilsa_status ilsa_get_time(const ilsa_solver *solver, double *time) {

@@ -3,6 +3,17 @@
 #include "tuning.h"
 #include <math.h>
 
+static int is_open(const ilsa_solver *s, const grid *g, int i, int j, int face) {
+    int other = ilsai_grid_neighbour(g, i, j, face);
+    return other < 0 || s->field.kind[other] < ILSA_CELL_SURVEY;
+}
+
+double ilsai_survey_size(const ilsa_solver *s, const grid *g, int i, int j) {
+    int along_x = is_open(s, g, i, j, GRID_LEFT) || is_open(s, g, i, j, GRID_RIGHT);
+    int along_y = is_open(s, g, i, j, GRID_DOWN) || is_open(s, g, i, j, GRID_UP);
+    return along_x && along_y ? ilsai_grid_h(g) : along_x ? g->dx : g->dy;
+}
+
 /* The first term of the width at a survey cell, and its derivatives by the widths of two cells. */
 typedef struct first_term {
     double width;

@@ -10,6 +10,10 @@
 
 #include "state.h"
 
+/* Cell size along the normal that survey cell (i, j) sees: of the faces that lead out of the
+ * channel. */
+double ilsai_survey_size(const ilsa_solver *s, const grid *g, int i, int j);
+
 /* The width that the asymptote alone would have at a survey cell, at the seed's distance and V. */
 double ilsai_survey_width(const ilsa_solver *s, const front_seed *seed);
 

@@ -178,23 +178,6 @@ static void cells_hold_their_points(void **state) {
         }
 }
 
-static void cell_index_in_the_plane(void **state) {
-    (void)state;
-    ilsa_mesh_def def = {5, 4, 2, 3};
-    assert_int_equal(ilsai_mesh_cells(&def), 20);
-    for (int j = 0; j < 4; j++)
-        for (int i = 0; i < 5; i++)
-            assert_int_equal(ilsai_mesh_cell(&def, ilsai_mesh_x(&def, i), ilsai_mesh_y(&def, j)),
-                             j * 5 + i);
-    assert_int_equal(ilsai_mesh_cell(&def, 0, 0), 12); /* on the edge between rows 1 and 2 */
-    assert_int_equal(ilsai_mesh_cell(&def, 5.01, 0), -1);
-    assert_int_equal(ilsai_mesh_cell(&def, 0, -6.01), -1);
-    for (size_t n = 0; n < 3; n++) {
-        assert_int_equal(ilsai_mesh_cell(&def, bad[n], 0), -1);
-        assert_int_equal(ilsai_mesh_cell(&def, 0, bad[n]), -1);
-    }
-}
-
 /* Material */
 
 static ilsa_status try_material(ilsa_material_def def) {
@@ -727,7 +710,6 @@ int main(void) {
         cmocka_unit_test(mesh_lives_and_dies),
         cmocka_unit_test(mesh_same_looks_at_everything),
         cmocka_unit_test(cells_hold_their_points),
-        cmocka_unit_test(cell_index_in_the_plane),
         cmocka_unit_test(material_refuses_bad_definitions),
         cmocka_unit_test(material_lives_and_dies),
         cmocka_unit_test(rock_gives_the_scaled_parameters),

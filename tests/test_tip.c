@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "csv.h"
+#include "numbers.h"
 #include "tip.h"
 
 #define BETA_M  3.1473451902649446
@@ -16,29 +17,6 @@
 
 /* What a function that fails must leave in its outputs. */
 #define UNTOUCHED -7.25
-
-static double larger(double a, double b) {
-    return !(b <= a) ? b : a; /* a NaN wins, so that a test cannot miss it */
-}
-
-static double relative(double value, double reference) {
-    return reference != 0.0 ? fabs(value / reference - 1.0) : fabs(value);
-}
-
-static void assert_below(double value, double bound) {
-    if (!(value <= bound))
-        fail_msg("%.3g exceeds %.3g", value, bound);
-}
-
-/* Marsaglia's xorshift: the same numbers on every machine. */
-static uint64_t random_state = 88172645463325252u;
-
-static double uniform(void) {
-    random_state ^= random_state << 13;
-    random_state ^= random_state >> 7;
-    random_state ^= random_state << 17;
-    return (double)(random_state >> 11) / 9007199254740992.0;
-}
 
 static double power_of_10(double low, double high) {
     return pow(10.0, low + (high - low) * uniform());

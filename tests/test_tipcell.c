@@ -11,29 +11,8 @@
 #include <cmocka.h>
 
 #include "csv.h"
+#include "numbers.h"
 #include "tipcell.h"
-
-static double larger(double a, double b) {
-    return !(b <= a) ? b : a; /* a NaN wins, so that a test cannot miss it */
-}
-
-static double relative(double value, double reference) {
-    return reference != 0.0 ? fabs(value / reference - 1.0) : fabs(value);
-}
-
-static void assert_below(double value, double bound) {
-    if (!(value <= bound))
-        fail_msg("%.3g exceeds %.3g", value, bound);
-}
-
-static uint64_t random_state = 88172645463325252u;
-
-static double uniform(void) {
-    random_state ^= random_state << 13;
-    random_state ^= random_state >> 7;
-    random_state ^= random_state << 17;
-    return (double)(random_state >> 11) / 9007199254740992.0;
-}
 
 /* cos and sin exact at the ends, as the solver has them. */
 static tipcell_front make_front(double ell, double alpha, double dx, double dy) {
