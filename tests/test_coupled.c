@@ -21,7 +21,7 @@ extern void *__libc_realloc(void *p, size_t size);
 /* NOLINTEND(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp) */
 
 ILSA_API void *realloc(void *p, size_t size) {
-    return may_allocate() ? __libc_realloc(p, size) : NULL;
+    return may_allocate(__builtin_return_address(0)) ? __libc_realloc(p, size) : NULL;
 }
 #endif
 
@@ -248,6 +248,7 @@ static void make_matrix(scene *s, matrix *at) {
     at->m.width = zeros(s->cells);
     at->m.pressure = zeros(s->cells);
     at->m.response = s->response;
+    at->m.edge = zeros((size_t)at->a.count);
     at->m.response_of = malloc((size_t)at->a.count * sizeof *at->m.response_of);
     assert_non_null(at->m.response_of);
     for (int k = 0; k < at->a.count; k++) {

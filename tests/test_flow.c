@@ -19,7 +19,7 @@ extern void *__libc_realloc(void *p, size_t size);
 /* NOLINTEND(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp) */
 
 ILSA_API void *realloc(void *p, size_t size) {
-    return may_allocate() ? __libc_realloc(p, size) : NULL;
+    return may_allocate(__builtin_return_address(0)) ? __libc_realloc(p, size) : NULL;
 }
 #endif
 
