@@ -105,6 +105,10 @@ static double old_passing(const coarse *c, int i, int j) {
     return on_old(c, c->s->leak, i, j);
 }
 
+static double old_spread(const coarse *c, int i, int j) {
+    return on_old(c, c->s->edge, i, j);
+}
+
 /* Mean of the finite values in the old cells around the new centre. */
 static double at_centre(const coarse *c, old_value *value, int i, int j) {
     const ilsa_mesh_def *old = &c->s->mesh;
@@ -165,6 +169,14 @@ static double passing(const ilsa_solver *s, size_t cell) {
                                             : INFINITY;
 }
 
+/* Spread of the trigger time over a cell that is full, or as it will be at its present speed. */
+static double spreading(const ilsa_solver *s, size_t cell) {
+    double V = s->field.speed[cell];
+    return s->field.kind[cell] >= ILSA_CELL_SURVEY ? s->field.spread[cell]
+           : V > 0 ? fmin(0.25 * (s->mesh.dx + s->mesh.dy) / V, s->now.time)
+                   : INFINITY;
+}
+
 /*
  * Levels and speeds with the inward march in place of what the channel's last were, which are of
  * any age; cells that it did not reach lie deep in the channel.
@@ -178,6 +190,7 @@ static void level_all(ilsa_solver *s) {
         int channel = s->field.kind[k] == ILSA_CELL_CHANNEL;
         s->trial.level[k] = channel ? -depth(s) : s->field.level[k];
         s->leak[k] = ilsai_has_leakoff(s) ? passing(s, k) : 0;
+        s->edge[k] = ilsai_has_leakoff(s) ? spreading(s, k) : 0;
     }
     for (int k = 0; k < count; k++) {
         s->trial.level[cells[k].cell] = -cells[k].T;
@@ -276,6 +289,9 @@ static void sample(coarse *c, const box *b) {
             if (c->field.trigger) {
                 double t = fmin(at_centre(c, old_passing, i, j), c->s->now.time);
                 c->field.trigger[cell] = c->field.level[cell] <= 0 ? t : INFINITY;
+                double spread = 2 * at_centre(c, old_spread, i, j);
+                c->field.spread[cell] =
+                    isfinite(spread) ? fmax(fmin(spread, c->s->now.time - t), 0) : 0;
             }
         }
     }

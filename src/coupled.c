@@ -15,6 +15,7 @@ struct coupled {
     gmres *krylov;
     double *rhs, *step;
     double *shift; /* change of the source terms at the front in this solve */
+    double *lift;  /* change of the pressures there for the front's move in this solve */
     int capacity;
     int *factored; /* the cells, in order, that the stencil factors were made for */
     unsigned char *factored_tip;
@@ -48,6 +49,7 @@ void ilsai_coupled_destroy(coupled **c) {
         free((*c)->rhs);
         free((*c)->step);
         free((*c)->shift);
+        free((*c)->lift);
         free((*c)->factored);
         free((*c)->factored_tip);
         free(*c);
@@ -72,7 +74,11 @@ static ilsa_status reserve(coupled *c, int count) {
         c->step = step ? step : c->step;
         double *shift = realloc(c->shift, capacity * sizeof *shift);
         c->shift = shift ? shift : c->shift;
-        if (!rhs || !step || !shift) {
+        double *lift = realloc(c->lift, capacity * sizeof *lift);
+        c->lift = lift ? lift : c->lift;
+        double *edge = realloc(c->matrix.edge, capacity * sizeof *edge);
+        c->matrix.edge = edge ? edge : c->matrix.edge;
+        if (!rhs || !step || !shift || !lift || !edge) {
             return ILSA_ERR_MEMORY;
         }
         c->capacity = (int)capacity;
@@ -113,7 +119,8 @@ void ilsai_coupled_pressure(coupled *c, const coupled_problem *problem, coupled_
     for (int k = 0; k < a->count; k++) {
         if (!a->tip[k]) {
             int cell = a->cell[k];
-            problem->pressure[cell] = problem->sigma[cell] + product[cell];
+            problem->pressure[cell] = problem->sigma[cell] + product[cell] +
+                                      c->matrix.edge[k] * problem->width[cell] + c->lift[k];
         }
     }
 }
@@ -194,6 +201,7 @@ static double take_step(const coupled *c, const coupled_problem *problem, double
             problem->pressure[cell] += delta;
         } else {
             problem->width[cell] += delta;
+            c->lift[k] += length * ilsai_jacobian_edge_pressure(&c->matrix, k, c->step);
             change = fabs(delta) > change ? fabs(delta) : change;
             largest = problem->width[cell] > largest ? problem->width[cell] : largest;
         }
@@ -251,7 +259,8 @@ static ilsa_status find_responses(coupled *c, const coupled_problem *problem) {
     }
     for (int k = 0; k < c->cells.count; k++) {
         c->matrix.response_of[k] = -1;
-        c->shift[k] = 0;
+        c->shift[k] = c->lift[k] = 0;
+        c->matrix.edge[k] = problem->edge ? problem->edge[c->cells.cell[k]] : 0;
     }
     for (int r = 0; r < problem->response_count; r++) {
         int k = c->cells.slot[problem->response[r].cell];

@@ -24,6 +24,7 @@ typedef struct coupled_problem {
     const double *sigma;          /* far-field stress */
     const double *width_old;      /* at the start of the step */
     const double *gain;           /* S of (4.4): injected less leaked in the step, per area */
+    const double *edge;           /* what the self term lacks in channel cells; NULL: nothing */
     const tip_response *response; /* of cells at the front to the widths, NULL: none */
     int response_count;
     double *width;    /* in: first guess, and the tip widths; out: solution, with images */
@@ -49,7 +50,10 @@ ilsa_status ilsai_coupled_solve(coupled *c, const coupled_problem *problem, coup
 /* Unknowns of the last solve. */
 int ilsai_coupled_unknowns(const coupled *c);
 
-/* pressure = sigma + C width in the channel cells (4.7), for the widths of the last solve. */
+/*
+ * pressure = sigma + C width in the channel cells (4.7), with the self terms as they are beside the
+ * front, for the widths of the last solve.
+ */
 void ilsai_coupled_pressure(coupled *c, const coupled_problem *problem, coupled_counts *counts);
 
 #endif

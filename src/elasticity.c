@@ -66,7 +66,8 @@ typedef struct engine {
 struct elasticity {
     double E_prime, dx, dy;
     int use_fft;
-    int bx, by; /* the box in use */
+    int bx, by;      /* the box in use */
+    edge_table edge; /* made when first asked for */
     engine engine;
 };
 
@@ -162,6 +163,14 @@ ilsa_status ilsai_elasticity_set_box(elasticity *e, int bx, int by) {
 
 ilsa_product ilsai_elasticity_method(const elasticity *e) {
     return e->use_fft ? ILSA_PRODUCT_FFT : ILSA_PRODUCT_BLAS;
+}
+
+edge_term ilsai_elasticity_edge(elasticity *e, const edge_front *front) {
+    if (e->edge.dx == 0)
+        ilsai_edge_table(&e->edge, e->dx, e->dy);
+    const double self = e->E_prime * ilsai_kernel(0, 0, e->dx, e->dy);
+    edge_term term = ilsai_edge_lookup(&e->edge, front);
+    return (edge_term){self * term.value, self * term.slope};
 }
 
 double ilsai_elasticity_entry(const elasticity *e, int i, int j) {

@@ -1,12 +1,14 @@
 /*
  * The displacement-discontinuity kernel (4.6) and its Toeplitz product on a box of cells.
  *
- * The one interface behind which another kernel fits: the product, the near-field entries.
+ * The one interface behind which another kernel fits: the product, the near-field entries, what the
+ * self term lacks beside the front.
  * E' is a factor of every entry.
  */
 #ifndef ILSAI_ELASTICITY_H
 #define ILSAI_ELASTICITY_H
 
+#include "edge.h"
 #include <ilsa/solver.h>
 
 /* C of (4.6) divided by E' for a cell offset (i, j) of cells dx by dy, free of cancellation. */
@@ -41,6 +43,10 @@ void ilsai_elasticity_multiply(elasticity *e, const double *w, double *p, size_t
 
 /* ILSA_PRODUCT_FFT or _BLAS, whichever computes the products. */
 ilsa_product ilsai_elasticity_method(const elasticity *e);
+
+/* What C(0, 0) lacks in a cell beside the front, and its derivative by the distance of the front.
+ */
+edge_term ilsai_elasticity_edge(elasticity *e, const edge_front *front);
 
 /* Entry C(i, j), |i| < bx, |j| < by, from the table of the box. */
 double ilsai_elasticity_entry(const elasticity *e, int i, int j);

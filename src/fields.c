@@ -14,10 +14,11 @@ ilsa_status ilsai_fields_create(fields *f, const ilsa_mesh_def *mesh, int leak_o
     f->kind = malloc(count);
     if (leak_off) {
         f->trigger = malloc(count * sizeof(double));
+        f->spread = malloc(count * sizeof(double));
         f->leaked = malloc(count * sizeof(double));
     }
     if (!f->width || !f->pressure || !f->level || !f->speed || !f->kind ||
-        (leak_off && (!f->trigger || !f->leaked))) {
+        (leak_off && (!f->trigger || !f->spread || !f->leaked))) {
         ilsai_fields_destroy(f);
         return ILSA_ERR_MEMORY;
     }
@@ -31,6 +32,7 @@ void ilsai_fields_destroy(fields *f) {
     free(f->level);
     free(f->speed);
     free(f->trigger);
+    free(f->spread);
     free(f->leaked);
     free(f->kind);
     memset(f, 0, sizeof *f);
@@ -46,6 +48,7 @@ static void clear_range(fields *f, size_t first, size_t count) {
     }
     if (f->trigger) {
         memset(f->leaked + first, 0, count * sizeof(double));
+        memset(f->spread + first, 0, count * sizeof(double));
         for (size_t k = first; k < first + count; k++) {
             f->trigger[k] = INFINITY;
         }

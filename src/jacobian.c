@@ -16,6 +16,7 @@ void ilsai_jacobian_destroy(jacobian *m) {
     free(m->influence);
     free(m->pivots);
     free(m->response_of);
+    free(m->edge);
     memset(m, 0, sizeof *m);
 }
 
@@ -43,6 +44,11 @@ double ilsai_jacobian_tip_gain(const jacobian *m, int k, const double *x) {
     return r ? respond(m, r, r->gain, x) : 0;
 }
 
+double ilsai_jacobian_edge_pressure(const jacobian *m, int k, const double *x) {
+    const tip_response *r = response_of(m, k);
+    return r ? respond(m, r, r->pressure, x) : 0;
+}
+
 /* Pressure changes that the width changes x of the channel cells bring about, and the tip's own. */
 static void apply_elasticity(jacobian *m, const double *x) {
     const active *a = m->a;
@@ -63,6 +69,8 @@ static void apply_elasticity(jacobian *m, const double *x) {
     for (int k = 0; k < a->count; k++) {
         if (a->tip[k]) {
             m->pressure[a->cell[k]] = x[k];
+        } else {
+            m->pressure[a->cell[k]] += m->edge[k] * x[k] + ilsai_jacobian_edge_pressure(m, k, x);
         }
     }
 }
@@ -100,6 +108,16 @@ void ilsai_jacobian_multiply(void *context, const double *x, double *y) {
 /* Receives the entry of a row in a column. */
 typedef void entry_sink(jacobian *m, int row, int column, double value);
 
+/* What the self term of active cell k lacks, its own part in the front's move included. */
+static double edge_self(const jacobian *m, int k) {
+    const tip_response *r = response_of(m, k);
+    double sum = m->edge[k];
+    for (int p = 0; r && p < r->count; p++) {
+        sum += r->from[p] == m->a->cell[k] ? r->pressure[p] : 0;
+    }
+    return sum;
+}
+
 /*
  * What the pressure of active cell b, weighing value in a row, is in terms of the unknowns. The tip
  * widths' responses are left out of the stencil matrix: they would double its band and save
@@ -111,6 +129,7 @@ static void spread_pressure(jacobian *m, int row, int b, double value, entry_sin
         sink(m, row, b, value);
         return;
     }
+    sink(m, row, b, value * edge_self(m, b));
     int ib = a->cell[b] % m->g->nx, jb = a->cell[b] / m->g->nx;
     for (int dj = -1; dj <= 1; dj++) {
         for (int di = -1; di <= 1; di++) {
@@ -243,6 +262,11 @@ static void fill_influence_row(jacobian *m, int row, double *out) {
         for (int p = 0; r && p < r->count; p++) {
             out[a->slot[r->from[p]]] += value * r->width[p];
         }
+    }
+    const tip_response *own = response_of(m, row);
+    out[row] += m->edge[row];
+    for (int p = 0; own && p < own->count; p++) {
+        out[a->slot[own->from[p]]] += own->pressure[p];
     }
 }
 

@@ -12,15 +12,15 @@
 #include "flow.h"
 
 /*
- * How the width and the source term of a cell at the front change with the widths of the survey
- * cells that the front there is found from.
+ * How the width and the source term of a cell at the front, or the pressure that its own width
+ * brings about there, change with the widths of the survey cells that the front is found from.
  */
 enum { RESPONSE_PARENTS = 8 };
 typedef struct tip_response {
     int cell;
     int count;
     int from[RESPONSE_PARENTS]; /* mesh cells */
-    double width[RESPONSE_PARENTS], gain[RESPONSE_PARENTS];
+    double width[RESPONSE_PARENTS], gain[RESPONSE_PARENTS], pressure[RESPONSE_PARENTS];
 } tip_response;
 
 typedef struct jacobian {
@@ -31,6 +31,7 @@ typedef struct jacobian {
     double *width, *pressure; /* work over the mesh; width is zero outside the channel cells */
     double *band;             /* LAPACK band storage, factored */
     double *full;             /* LAPACK storage of the transpose, factored */
+    double *edge;             /* per active cell: what its self term of C lacks at the front */
     const tip_response *response;
     int *response_of;  /* per active cell: its response, or -1 */
     double *influence; /* folded C between active cells, one row a cell */
@@ -48,6 +49,8 @@ void ilsai_jacobian_precondition(void *context, const double *x, double *y);
 /* Changes of the width and of the source term of active cell k for changes x of the unknowns. */
 double ilsai_jacobian_tip_width(const jacobian *m, int k, const double *x);
 double ilsai_jacobian_tip_gain(const jacobian *m, int k, const double *x);
+/* Change of the pressure in active channel cell k as the front moves and its width stays. */
+double ilsai_jacobian_edge_pressure(const jacobian *m, int k, const double *x);
 
 /* Assembles and factors the stencil matrix. ILSA_ERR_MEMORY; ILSA_ERR_NUMERIC if singular. */
 ilsa_status ilsai_jacobian_factor_stencil(jacobian *m);

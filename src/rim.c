@@ -1,14 +1,16 @@
 #include "rim.h"
 
+#include "survey.h"
 #include "tuning.h"
 #include <math.h>
 #include <stdlib.h>
 
-/* Volume leaked per area from a channel cell in the step, (4.8). */
+/* Volume leaked per area from a channel cell in the step, (4.8) with the mean over the cell. */
 static double channel_leak(const ilsa_solver *s, int cell, double dt) {
-    double age = s->now.time - s->field.trigger[cell];
+    double age = s->now.time - s->field.trigger[cell], spread = s->field.spread[cell];
     age = age > 0 ? age : 0;
-    return 2 * s->material.C_prime * dt / (sqrt(age + dt) + sqrt(age));
+    return ilsai_tipcell_full_leakoff(s->material.C_prime, age + dt, spread) -
+           ilsai_tipcell_full_leakoff(s->material.C_prime, age, spread);
 }
 
 static void add_sources(ilsa_solver *s, double dt) {
@@ -43,6 +45,7 @@ ilsa_status ilsai_rim_begin(ilsa_solver *s, double dt) {
             int channel = s->field.kind[cell] >= ILSA_CELL_SURVEY;
             s->leak[cell] = channel && ilsai_has_leakoff(s) ? channel_leak(s, cell, dt) : 0;
             s->gain[cell] = -s->leak[cell];
+            s->edge[cell] = 0;
         }
     }
     ilsa_status status = check_sources(s);
@@ -154,6 +157,29 @@ static void set_cell(ilsa_solver *s, const front_cell *c, double dt, int hold) {
     }
 }
 
+/* What the self terms of the survey cells and of cells that have filled in the step lack. */
+static edge_term edge_of(const ilsa_solver *s, const front_cell *c) {
+    double at = -c->T, V = c->V > 0 ? c->V : 0;
+    double w = V > 0 ? ilsai_tip_width(&s->material, V, at) : 1;
+    edge_front seen = {at, c->cos_a, c->sin_a, ilsai_tip_exponent(&s->material, V, at, w)};
+    return ilsai_elasticity_edge(s->elastic, &seen);
+}
+
+static edge_term edge_of_seed(const ilsa_solver *s, const front_seed *seed) {
+    edge_front seen = ilsai_survey_front(seed);
+    return ilsai_elasticity_edge(s->elastic, &seen);
+}
+
+static void set_edges(ilsa_solver *s, const front_cell *cells, int count) {
+    for (int k = 0; k < s->seed_count; k++) {
+        s->edge[s->seeds[k].cell] = edge_of_seed(s, &s->seeds[k]).value;
+    }
+    for (int k = 0; k < count; k++) {
+        int full = s->trial.kind[cells[k].cell] >= ILSA_CELL_SURVEY;
+        s->edge[cells[k].cell] = full ? edge_of(s, &cells[k]).value : 0;
+    }
+}
+
 /* A tip cell wetted in this step starts from the pressure of a wet neighbour. */
 static void guess_pressure(ilsa_solver *s, const front_cell *c) {
     if (s->field.kind[c->cell] != ILSA_CELL_EMPTY || s->trial.pressure[c->cell] != 0) {
@@ -198,6 +224,7 @@ ilsa_status ilsai_rim_set(ilsa_solver *s, double dt, int hold) {
             }
         }
     }
+    set_edges(s, cells, count);
     return status;
 }
 
@@ -210,48 +237,67 @@ static double leak_for(const ilsa_solver *s, const front_cell *c, double dt) {
     return leak > 0 ? leak : 0;
 }
 
-/* Derivatives of mean width and gain by an advance of the front within the step. */
-static void differentiate(const ilsa_solver *s, const front_cell *c, double dt, double *width,
-                          double *gain) {
+/* What of a cell answers, and how, to an advance of the front or to a width. */
+typedef struct answer {
+    double width, gain, pressure;
+} answer;
+
+/* Derivatives by an advance of the front within the step. */
+static answer differentiate(ilsa_solver *s, const front_cell *c, double dt) {
     double small = ILSAI_DIFFERENCE * ilsai_grid_h(&s->g);
     front_cell moved = *c;
     moved.ell += small;
     moved.T -= small;
     moved.V += small / dt;
-    *width = *gain = 0;
+    answer a = {0, 0, 0};
     if (s->trial.kind[c->cell] == ILSA_CELL_TIP) {
-        *width = (mean_width(s, &moved) - s->trial.width[c->cell]) / small;
+        a.width = (mean_width(s, &moved) - s->trial.width[c->cell]) / small;
+    } else {
+        a.pressure = edge_of(s, c).slope * s->trial.width[c->cell];
     }
     if (ilsai_has_leakoff(s)) {
-        *gain = (s->leak[c->cell] - leak_for(s, &moved, dt)) / small;
+        a.gain = (s->leak[c->cell] - leak_for(s, &moved, dt)) / small;
     }
+    return a;
 }
 
 /* Adds a cell that a response answers to. */
-static void answer_to(tip_response *r, int cell, double width, double gain) {
+static void answer_to(tip_response *r, int cell, const answer *a, double weight) {
     r->from[r->count] = cell;
-    r->width[r->count] = width;
-    r->gain[r->count++] = gain;
+    r->width[r->count] = weight * a->width;
+    r->gain[r->count] = weight * a->gain;
+    r->pressure[r->count++] = weight * a->pressure;
+}
+
+/* To the front that a survey cell places. */
+static void answer_to_seed(tip_response *r, const front_seed *seed, const answer *a,
+                           double weight) {
+    answer_to(r, seed->cell, a, weight * seed->ds_dw);
+    if (seed->inner >= 0) {
+        answer_to(r, seed->inner, a, weight * seed->ds_inner);
+    }
 }
 
 /* A front at rest answers with its stress intensity, (4.19); a moving one by moving. */
-static tip_response response_in(const ilsa_solver *s, const front_cell *c, double dt) {
+static tip_response response_in(ilsa_solver *s, const front_cell *c, double dt) {
     tip_response r = {.cell = c->cell};
-    double width, gain;
-    differentiate(s, c, dt, &width, &gain);
+    answer moving = differentiate(s, c, dt), resting = {s->trial.width[c->cell], 0, 0};
     for (int p = 0; p < c->from.count; p++) {
         const front_seed *seed = &s->seeds[c->from.seed[p]];
-        double by_cell = c->from.weight[p] * seed->ds_dw;
-        double by_inner = c->from.weight[p] * seed->ds_inner;
         if (c->V > 0) {
-            answer_to(&r, seed->cell, width * by_cell, gain * by_cell);
-            if (seed->inner >= 0) {
-                answer_to(&r, seed->inner, width * by_inner, gain * by_inner);
-            }
+            answer_to_seed(&r, seed, &moving, c->from.weight[p]);
         } else if (s->trial.kind[c->cell] == ILSA_CELL_TIP) {
-            answer_to(&r, seed->cell, s->trial.width[c->cell] * sqrt(seed->s) / c->K_num, 0);
+            answer_to(&r, seed->cell, &resting, sqrt(seed->s) / c->K_num);
         }
     }
+    return r;
+}
+
+/* The self term of a survey cell changes as the front moves away from it. */
+static tip_response response_of_seed(const ilsa_solver *s, const front_seed *seed) {
+    tip_response r = {.cell = seed->cell};
+    answer a = {0, 0, edge_of_seed(s, seed).slope * s->trial.width[seed->cell]};
+    answer_to_seed(&r, seed, &a, 1);
     return r;
 }
 
@@ -259,14 +305,17 @@ ilsa_status ilsai_rim_respond(ilsa_solver *s, double dt) {
     int count;
     const front_cell *cells = ilsai_front_cells(s->march, &count);
     s->response_count = 0;
-    if (count > s->response_capacity) {
-        size_t capacity = (size_t)count + (size_t)count / 2 + 16;
+    if (count + s->seed_count > s->response_capacity) {
+        size_t most = (size_t)count + (size_t)s->seed_count, capacity = most + most / 2 + 16;
         tip_response *fresh = realloc(s->responses, capacity * sizeof *fresh);
         if (!fresh) {
             return ILSA_ERR_MEMORY;
         }
         s->responses = fresh;
         s->response_capacity = (int)capacity;
+    }
+    for (int k = 0; k < s->seed_count; k++) {
+        s->responses[s->response_count++] = response_of_seed(s, &s->seeds[k]);
     }
     for (int k = 0; k < count; k++) {
         if (s->trial.kind[cells[k].cell] != ILSA_CELL_EMPTY) {

@@ -159,6 +159,8 @@ void ilsai_shape_set(const ilsa_solver *s, front_seed *seeds, int count) {
         front_seed *seed = &seeds[k];
         int i = seed->cell % s->mesh.nx, j = seed->cell / s->mesh.nx;
         vector n = normal_seen(s, i, j);
+        seed->cos_a = fabs(n.x);
+        seed->sin_a = fabs(n.y);
         seed->curvature = curvature_at(s, i, j, n, seed->s0);
         find_inner(s, seed, i, j, n);
     }

@@ -9,7 +9,7 @@
 #include <string.h>
 
 #define SNAPSHOT_MAGIC "ilsasnap"
-enum { SNAPSHOT_LAYOUT = 1 };
+enum { SNAPSHOT_LAYOUT = 2 };
 
 typedef struct header {
     char magic[8];
@@ -132,6 +132,7 @@ static void pass_fields(stream *io, const ilsa_solver *s, const box *b, const fi
     pass_rows(io, s, b, f->kind, sizeof *f->kind);
     if (f->trigger) {
         pass_rows(io, s, b, f->trigger, sizeof *f->trigger);
+        pass_rows(io, s, b, f->spread, sizeof *f->spread);
         pass_rows(io, s, b, f->leaked, sizeof *f->leaked);
     }
 }

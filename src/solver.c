@@ -97,10 +97,11 @@ static ilsa_status allocate(ilsa_solver *s) {
     s->sigma = malloc(count * sizeof(double));
     s->gain = malloc(count * sizeof(double));
     s->leak = malloc(count * sizeof(double));
+    s->edge = malloc(count * sizeof(double));
     s->march = ilsai_front_create();
     s->flow = ilsai_coupled_create(&s->mesh);
     s->mixer = ilsai_anderson_create(ILSAI_ANDERSON_DEPTH);
-    if (!s->sigma || !s->gain || !s->leak || !s->march || !s->flow || !s->mixer ||
+    if (!s->sigma || !s->gain || !s->leak || !s->edge || !s->march || !s->flow || !s->mixer ||
         ilsai_fields_create(&s->field, &s->mesh, leak_off) != ILSA_OK ||
         ilsai_fields_create(&s->trial, &s->mesh, 0) != ILSA_OK) {
         return ILSA_ERR_MEMORY;
@@ -168,6 +169,7 @@ void ilsa_solver_destroy(ilsa_solver **solver) {
     free(s->trial_tips.at);
     free(s->gain);
     free(s->leak);
+    free(s->edge);
     free(s->seeds);
     free(s->responses);
     free(s->distance);

@@ -42,12 +42,17 @@ static void lay_leakoff(ilsa_solver *s, const penny *p, const front_cell *c) {
     double rho = (c->T + p->solution->R) / p->solution->R, t = p->solution->t;
     int cell = c->cell;
     s->field.trigger[cell] = rho < 1 ? ilsai_radial_arrival(p->solution, rho) : INFINITY;
+    double half = 0.5 * (s->mesh.dx * c->cos_a + s->mesh.dy * c->sin_a) / p->solution->R;
+    tipcell_front at = {c->ell, c->cos_a, c->sin_a, s->mesh.dx, s->mesh.dy};
     if (s->field.kind[cell] == ILSA_CELL_CHANNEL) {
-        s->field.leaked[cell] = 2 * s->material.C_prime * sqrt(t - s->field.trigger[cell]);
+        double took = ilsai_radial_arrival(p->solution, fmin(rho + half, 1)) -
+                      ilsai_radial_arrival(p->solution, fmax(rho - half, 0));
+        s->field.spread[cell] = ilsai_tipcell_spread(&at, took);
+        s->field.leaked[cell] = ilsai_tipcell_full_leakoff(
+            s->material.C_prime, t - s->field.trigger[cell], s->field.spread[cell]);
         return;
     }
     double corner = (p->solution->R - c->ell) / p->solution->R;
-    tipcell_front at = {c->ell, c->cos_a, c->sin_a, s->mesh.dx, s->mesh.dy};
     tip_record *record = &s->tips.at[s->tips.count++];
     record->cell = cell;
     ilsai_tipcell_enter(&record->history, ilsai_radial_arrival(p->solution, corner));

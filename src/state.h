@@ -20,6 +20,7 @@ typedef struct fields {
     double *level;    /* signed distance to the front; in old channel cells what it last was */
     double *speed;    /* of the front, where it is or last was seen from the cell */
     double *trigger;  /* time at which the front passed the centre; only with leak-off */
+    double *spread;   /* of the trigger time over the cell, see tipcell.h; only with leak-off */
     double *leaked;   /* volume leaked per area so far; only with leak-off */
     unsigned char *kind;
 } fields;
@@ -78,6 +79,7 @@ struct ilsa_solver {
     box region;   /* cells that the step may touch */
     fields trial; /* trial.trigger and trial.leaked are unused: both change on acceptance */
     tip_records trial_tips;
+    double *edge;        /* what the self terms of channel cells lack beside the front */
     double *gain, *leak; /* per area in this step: S of (4.4), and the leaked part of it */
     front_seed *seeds;
     double *distance, *next_distance;

@@ -102,6 +102,7 @@ static void place_front(ilsa_solver *s, double dt) {
         front_seed *seed = &s->seeds[k];
         seed->s = s->distance[k];
         seed->V = (seed->s - seed->s0) / dt;
+        ilsai_survey_settle(s, seed);
         seed->w = ilsai_survey_width(s, seed);
     }
 }
@@ -141,6 +142,7 @@ static coupled_problem pose(ilsa_solver *s, double dt, int pass, double change) 
                                .sigma = s->sigma,
                                .width_old = s->field.width,
                                .gain = s->gain,
+                               .edge = s->edge,
                                .width = s->trial.width,
                                .pressure = s->trial.pressure,
                                .dt = dt,
@@ -316,6 +318,28 @@ static void add_leaked(ilsa_solver *s) {
     }
 }
 
+/* How unevenly in time the front has passed the cells that it has filled in the step. */
+static void set_spreads(ilsa_solver *s, double dt) {
+    int count;
+    const front_cell *cells = ilsai_front_cells(s->march, &count);
+    for (int k = 0, r = 0; k < count && r < s->trial_tips.count; k++) {
+        const front_cell *c = &cells[k];
+        if (s->trial_tips.at[r].cell != c->cell) {
+            continue;
+        }
+        const tip_record *record = &s->trial_tips.at[r++];
+        if (s->trial.kind[c->cell] != ILSA_CELL_TIP) {
+            tipcell_front at = {c->ell, c->cos_a, c->sin_a, s->g.dx, s->g.dy};
+            double over = c->ell - ilsai_front_full(&s->g, c->cos_a, c->sin_a);
+            double since = c->V > 0 ? fmin(fmax(over, 0) / c->V, dt) : 0;
+            double filled = s->now.time + dt - since;
+            double spread = ilsai_tipcell_spread(&at, filled - record->history.t[0]);
+            double age = filled - s->field.trigger[c->cell];
+            s->field.spread[c->cell] = fmax(fmin(spread, age), 0);
+        }
+    }
+}
+
 /* Keeps the paths of the cells that are still tip cells. */
 static void keep_tips(ilsa_solver *s) {
     tip_records old = s->tips;
@@ -346,6 +370,7 @@ static void unfold(ilsa_solver *s) {
             s->trial.kind[cell] = s->trial.kind[from];
             if (ilsai_has_leakoff(s)) {
                 s->field.trigger[cell] = s->field.trigger[from];
+                s->field.spread[cell] = s->field.spread[from];
                 s->field.leaked[cell] = s->field.leaked[from];
             }
         }
@@ -360,6 +385,7 @@ static void accept(ilsa_solver *s, double dt, double change) {
     ilsai_step_classify(&s->g, &part, s->trial.kind);
     if (ilsai_has_leakoff(s)) {
         set_triggers(s, dt);
+        set_spreads(s, dt);
         add_leaked(s);
         keep_tips(s);
     }

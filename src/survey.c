@@ -14,15 +14,24 @@ double ilsai_survey_size(const ilsa_solver *s, const grid *g, int i, int j) {
     return along_x && along_y ? ilsai_grid_h(g) : along_x ? g->dx : g->dy;
 }
 
-/* The first term of the width at a survey cell, and its derivatives by the widths of two cells. */
+edge_front ilsai_survey_front(const front_seed *seed) {
+    return (edge_front){seed->s, seed->cos_a, seed->sin_a, seed->exponent};
+}
+
+/*
+ * The first term of the width at the centre of a survey cell, and its derivatives by the widths of
+ * two cells, which are means.
+ */
 typedef struct first_term {
     double width;
     double by_cell, by_inner;
 } first_term;
 
 static first_term split_width(const ilsa_solver *s, const front_seed *seed) {
-    double w = s->trial.width[seed->cell];
-    first_term out = {w, 1, 0};
+    edge_front seen = ilsai_survey_front(seed);
+    double mean = ilsai_edge_mean(s->mesh.dx, s->mesh.dy, &seen);
+    double w = s->trial.width[seed->cell] / mean;
+    first_term out = {w, 1 / mean, 0};
     if (seed->inner < 0) {
         return out;
     }
@@ -31,6 +40,8 @@ static first_term split_width(const ilsa_solver *s, const front_seed *seed) {
         here = ilsai_tip_width(&s->material, seed->V, seed->s);
         there = ilsai_tip_width(&s->material, seed->V, deep);
     }
+    seen.s = deep;
+    there *= ilsai_edge_mean(s->mesh.dx, s->mesh.dy, &seen);
     double inner = s->trial.width[seed->inner], q = inner * here / (w * there);
     double below = deep - q * seed->s, limit = ILSAI_NEXT_TERM_MAX;
     double term = below > 0 ? (q - 1) * seed->s / below : limit;
@@ -40,9 +51,14 @@ static first_term split_width(const ilsa_solver *s, const front_seed *seed) {
         slope = 0;
     }
     out.width = w / (1 + term);
-    out.by_cell = 1 / (1 + term) + q * slope / ((1 + term) * (1 + term));
+    out.by_cell = (1 / (1 + term) + q * slope / ((1 + term) * (1 + term))) / mean;
     out.by_inner = -w * q * slope / (inner * (1 + term) * (1 + term));
     return out;
+}
+
+void ilsai_survey_settle(const ilsa_solver *s, front_seed *seed) {
+    double w = seed->V > 0 ? ilsai_tip_width(&s->material, seed->V, seed->s) : 1;
+    seed->exponent = ilsai_tip_exponent(&s->material, seed->V, seed->s, w);
 }
 
 double ilsai_survey_width(const ilsa_solver *s, const front_seed *seed) {
@@ -51,6 +67,7 @@ double ilsai_survey_width(const ilsa_solver *s, const front_seed *seed) {
 
 /* One evaluation of (4.9), the second term taken at the distance and velocity that seed has. */
 static double distance_for(const ilsa_solver *s, front_seed *seed, double dt) {
+    ilsai_survey_settle(s, seed);
     first_term w = split_width(s, seed);
     tip_front at = ilsai_tip_distance(&s->material, w.width, seed->s0, dt);
     seed->ds_dw = at.ds_dw * w.by_cell;

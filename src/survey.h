@@ -14,7 +14,16 @@
  * channel. */
 double ilsai_survey_size(const ilsa_solver *s, const grid *g, int i, int j);
 
-/* The width that the asymptote alone would have at a survey cell, at the seed's distance and V. */
+/* Sets the exponent of a seed for its distance and V. */
+void ilsai_survey_settle(const ilsa_solver *s, front_seed *seed);
+
+/* The front as the survey cell sees it, at the seed's distance and V. */
+edge_front ilsai_survey_front(const front_seed *seed);
+
+/*
+ * The width that the asymptote alone would have at the centre of a survey cell, at the seed's
+ * distance and V.
+ */
 double ilsai_survey_width(const ilsa_solver *s, const front_seed *seed);
 
 /*

@@ -314,6 +314,16 @@ void ilsai_tip_moments(const tip_law *law, double V, double s, double w, double 
     *M1 = 2.0 * w * s * s / (5.0 + delta[1]);
 }
 
+double ilsai_tip_exponent(const tip_law *law, double V, double s, double w) {
+    double delta[2] = {0.0, 0.0};
+    if (V > 0.0) {
+        double K, C;
+        scaled_variables(law, V, s, w, &K, &C);
+        delta_p(K, C, (double[]){0.0, 0.0}, delta);
+    }
+    return 0.5 * (1.0 + delta[0]);
+}
+
 /*
  * (4.9) in units of s0: K0 and C0 are K_hat at s0 and C_hat for V = s0 / dt, m0 likewise s_hat.
  * With xi = v / s0 the unknown is x, 1 / x = 1 / xi - 1 / xi_most, which runs from 0 to infinity

@@ -13,6 +13,9 @@ double ilsai_tip_width(const tip_law *law, double V, double s);
 /* M0 and M1 over [0, s] of (3.18) for V >= 0 (V = 0: Delta_p = 0), w the width at s. */
 void ilsai_tip_moments(const tip_law *law, double V, double s, double w, double *M0, double *M1);
 
+/* d ln w / d ln s at distance s for V >= 0, w the width there: 1/2 .. 2/3, (1 + Delta) / 2. */
+double ilsai_tip_exponent(const tip_law *law, double V, double s, double w);
+
 /* The survey-cell inversion (4.9). */
 typedef struct tip_front {
     double s;     /* distance to the front, >= s0 */

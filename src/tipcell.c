@@ -191,3 +191,15 @@ double ilsai_tipcell_leakoff(double C_prime, const tipcell_front *front,
     }
     return leaked;
 }
+
+double ilsai_tipcell_full_leakoff(double C_prime, double age, double spread) {
+    const double oldest = fmax(age + spread, 0.0), newest = fmax(age - spread, 0.0);
+    const double p = sqrt(oldest), q = sqrt(newest);
+    const double wet = newest > 0.0 || spread <= 0.0 ? 1.0 : oldest / (2.0 * spread);
+    return p > 0.0 ? 4.0 / 3.0 * C_prime * wet * (oldest + p * q + newest) / (p + q) : 0.0;
+}
+
+double ilsai_tipcell_spread(const tipcell_front *front, double T) {
+    const double a = front->dx * front->cos_a, b = front->dy * front->sin_a;
+    return 0.5 * T * hypot(a, b) / (a + b);
+}

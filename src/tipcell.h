@@ -64,4 +64,13 @@ double ilsai_tipcell_leakoff(double C_prime, const tipcell_front *front,
 double ilsai_tipcell_leakoff_path(double C_prime, const tipcell_front *front, int count,
                                   const double *t, const double *ell);
 
+/*
+ * Once the cell is full: 2 C' times the mean of (t - t_0)^(1/2) over it, per area, when the front
+ * passed the centre a time `age` ago and passed the rest evenly within `spread` before and after.
+ * (4.8) is spread = 0. A cell that the front takes the time T to pass in has the spread below: that
+ * of the same variance.
+ */
+double ilsai_tipcell_full_leakoff(double C_prime, double age, double spread);
+double ilsai_tipcell_spread(const tipcell_front *front, double T);
+
 #endif

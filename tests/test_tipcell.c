@@ -443,6 +443,46 @@ static void test_velocity_switch_is_continuous(void **state) {
     assert_below(largest, 0.002 * before);
 }
 
+/* ---- Full cells --------------------------------------------------------------------------- */
+
+/* The front passes the cell at constant speed and goes on: the path against the mean of the root.
+ */
+static void full_cells_leak_their_mean(void **unused) {
+    (void)unused;
+    double worst = 0, jump = 0, centre = 0;
+    for (double alpha = 0; alpha < 1.6; alpha += 0.19634954084936207) {
+        const tipcell_front f = {0, cos(alpha), fabs(sin(alpha)), 1, 0.6};
+        const double full = f.dx * f.cos_a + f.dy * f.sin_a, V = 2;
+        const double spread = ilsai_tipcell_spread(&f, full / V);
+        for (double since = 0; since < 30; since = 2 * since + 0.01) {
+            const double t[2] = {0, full / V + since}, ell[2] = {0, V * t[1]};
+            const double exact = ilsai_tipcell_leakoff_path(1, &f, 2, t, ell) / (f.dx * f.dy);
+            const double age = since + 0.5 * full / V;
+            const double mean = ilsai_tipcell_full_leakoff(1, age, spread);
+            worst = fmax(worst, fabs(mean / exact - 1));
+            jump = since == 0 ? fmax(jump, fabs(mean / exact - 1)) : jump;
+            centre = fmax(centre, fabs(2 * sqrt(age) / exact - 1));
+        }
+    }
+    print_message("full cells: %.2e off, %.2e when they fill; by the centre's time %.2e\n", worst,
+                  jump, centre);
+    assert_true(worst < 2.5e-3);
+    assert_true(centre > 0.05);
+}
+
+static void full_cells_without_spread(void **unused) {
+    (void)unused;
+    for (double age = 1e-9; age < 1e9; age *= 7) {
+        assert_true(fabs(ilsai_tipcell_full_leakoff(3, age, 0) / (6 * sqrt(age)) - 1) < 1e-15);
+        assert_true(fabs(ilsai_tipcell_full_leakoff(3, age, 1e-9 * age) / (6 * sqrt(age)) - 1) <
+                    1e-15);
+    }
+    assert_true(ilsai_tipcell_full_leakoff(3, 0, 0) == 0);
+    /* a front still within the cell leaves a part of it dry */
+    assert_true(fabs(ilsai_tipcell_full_leakoff(3, 0, 2) - 6 * sqrt(2.0) / 3) < 1e-14);
+    assert_true(ilsai_tipcell_full_leakoff(3, -2, 2) == 0);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_volume_table),
@@ -462,6 +502,8 @@ int main(void) {
         cmocka_unit_test(test_history_thinning),
         cmocka_unit_test(test_velocity_switch),
         cmocka_unit_test(test_velocity_switch_is_continuous),
+        cmocka_unit_test(full_cells_leak_their_mean),
+        cmocka_unit_test(full_cells_without_spread),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
