@@ -9,8 +9,7 @@
 static double channel_leak(const ilsa_solver *s, int cell, double dt) {
     double age = s->now.time - s->field.trigger[cell], spread = s->field.spread[cell];
     age = age > 0 ? age : 0;
-    return ilsai_tipcell_full_leakoff(s->material.C_prime, age + dt, spread) -
-           ilsai_tipcell_full_leakoff(s->material.C_prime, age, spread);
+    return ilsai_tipcell_full_leakoff_step(s->material.C_prime, age, dt, spread);
 }
 
 static void add_sources(ilsa_solver *s, double dt) {
@@ -104,13 +103,18 @@ static unsigned char classify(const ilsa_solver *s, const front_cell *c, int hol
     return wet || s->field.kind[c->cell] == ILSA_CELL_TIP ? ILSA_CELL_TIP : ILSA_CELL_EMPTY;
 }
 
-/* The path of the front in the cell up to the end of the step. */
+/*
+ * The path of the front in the cell up to the end of the step. The front at its start is where this
+ * step's own march has it, so that what leaks in the step goes to nothing with the step.
+ */
 static tipcell_history path_in_cell(const ilsa_solver *s, const front_cell *c, double dt) {
     double t = s->now.time + dt;
     const tip_record *record = ilsai_tip_records_find(&s->tips, c->cell);
     tipcell_history history;
     if (record) {
+        double ell = fmax(c->ell, 0);
         history = record->history;
+        ilsai_tipcell_amend(&history, ell - fmax(c->V, 0) * dt, ell);
     } else {
         double since = c->V > 0 ? c->ell / c->V : dt;
         since = since > dt ? dt : since;
@@ -121,15 +125,18 @@ static tipcell_history path_in_cell(const ilsa_solver *s, const front_cell *c, d
     return history;
 }
 
-/* Leak-off (4.25): all that has leaked until now less what had before, never less than nothing. */
+/* Leak-off (4.25) in the step, per area, if the front were where c has it, and its path. */
+static double leak_for(const ilsa_solver *s, const front_cell *c, double dt,
+                       tipcell_history *history) {
+    tipcell_front at = {c->ell, c->cos_a, c->sin_a, s->g.dx, s->g.dy};
+    *history = path_in_cell(s, c, dt);
+    return ilsai_tipcell_leakoff_last(s->material.C_prime, &at, history) / (s->g.dx * s->g.dy);
+}
+
 static void leak_at_front(ilsa_solver *s, const front_cell *c, double dt) {
     tip_record *record = &s->trial_tips.at[s->trial_tips.count++];
-    tipcell_front at = {c->ell, c->cos_a, c->sin_a, s->g.dx, s->g.dy};
     record->cell = c->cell;
-    record->history = path_in_cell(s, c, dt);
-    double total = ilsai_tipcell_leakoff(s->material.C_prime, &at, &record->history);
-    double leak = total / (s->g.dx * s->g.dy) - s->field.leaked[c->cell];
-    set_leak(s, c->cell, leak > 0 ? leak : 0);
+    set_leak(s, c->cell, leak_for(s, c, dt, &record->history));
 }
 
 /* Mean width (4.18); in a cell that has just filled it is the first guess of the coupled solve. */
@@ -228,15 +235,6 @@ ilsa_status ilsai_rim_set(ilsa_solver *s, double dt, int hold) {
     return status;
 }
 
-/* Leak-off of the cell in the step if the front were where c has it. */
-static double leak_for(const ilsa_solver *s, const front_cell *c, double dt) {
-    tipcell_front at = {c->ell, c->cos_a, c->sin_a, s->g.dx, s->g.dy};
-    tipcell_history history = path_in_cell(s, c, dt);
-    double total = ilsai_tipcell_leakoff(s->material.C_prime, &at, &history);
-    double leak = total / (s->g.dx * s->g.dy) - s->field.leaked[c->cell];
-    return leak > 0 ? leak : 0;
-}
-
 /* What of a cell answers, and how, to an advance of the front or to a width. */
 typedef struct answer {
     double width, gain, pressure;
@@ -256,7 +254,8 @@ static answer differentiate(ilsa_solver *s, const front_cell *c, double dt) {
         a.pressure = edge_of(s, c).slope * s->trial.width[c->cell];
     }
     if (ilsai_has_leakoff(s)) {
-        a.gain = (s->leak[c->cell] - leak_for(s, &moved, dt)) / small;
+        tipcell_history path;
+        a.gain = (s->leak[c->cell] - leak_for(s, &moved, dt, &path)) / small;
     }
     return a;
 }

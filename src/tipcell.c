@@ -108,6 +108,12 @@ static void history_drop(tipcell_history *history) {
     }
 }
 
+void ilsai_tipcell_amend(tipcell_history *history, double ell, double most) {
+    const int last = history->count - 1;
+    if (last > 0)
+        history->ell[last] = fmax(fmin(ell, most), history->ell[last - 1]);
+}
+
 void ilsai_tipcell_record(tipcell_history *history, double t, double ell) {
     ell = fmax(ell, history->ell[history->count - 1]);
     if (history->count == TIPCELL_KNOTS)
@@ -176,20 +182,45 @@ static double variation(const tipcell_history *history) {
     return first > 0 ? fmin(1, fmax(0, change / (TIPCELL_BLEND * first))) : 1;
 }
 
+/* One segment up to the last knot, or up to the time t on the way there. */
+static double constant_leakoff(double C_prime, const tipcell_front *front,
+                               const tipcell_history *history, double t) {
+    const int last = history->count - 1;
+    const double t0 = history->t[0], part = (t - t0) / (history->t[last] - t0);
+    return ilsai_tipcell_leakoff_path(C_prime, front, 2, (double[]){t0, t},
+                                      (double[]){0, part * history->ell[last]});
+}
+
+/* Between the two formulas, as far as the velocity's change decides. */
+static double blend(double varied, double constant, double path) {
+    return constant + varied * (path - constant);
+}
+
 double ilsai_tipcell_leakoff(double C_prime, const tipcell_front *front,
                              const tipcell_history *history) {
     const int n = history->count;
+    const double varied = n > 2 ? variation(history) : 0;
+    const double constant =
+        varied < 1 ? constant_leakoff(C_prime, front, history, history->t[n - 1]) : 0;
+    const double path =
+        varied > 0 ? ilsai_tipcell_leakoff_path(C_prime, front, n, history->t, history->ell) : 0;
+    return blend(varied, constant, path);
+}
+
+double ilsai_tipcell_leakoff_last(double C_prime, const tipcell_front *front,
+                                  const tipcell_history *history) {
+    const int n = history->count;
     const double *t = history->t, *ell = history->ell;
-    const double varied = n > 2 ? variation(history) : 1;
-    double leaked = 0;
-    if (!(varied >= 1)) {
-        leaked = ilsai_tipcell_leakoff_path(C_prime, front, 2, (double[]){t[0], t[n - 1]},
-                                            (double[]){ell[0], ell[n - 1]});
-    }
-    if (!(varied <= 0)) {
-        leaked += varied * (ilsai_tipcell_leakoff_path(C_prime, front, n, t, ell) - leaked);
-    }
-    return leaked;
+    if (n <= 2)
+        return ilsai_tipcell_leakoff(C_prime, front, history);
+    const double varied = variation(history);
+    const double constant = varied < 1 ? constant_leakoff(C_prime, front, history, t[n - 1]) -
+                                             constant_leakoff(C_prime, front, history, t[n - 2])
+                                       : 0;
+    const double path = varied > 0 ? ilsai_tipcell_leakoff_path(C_prime, front, n, t, ell) -
+                                         ilsai_tipcell_leakoff_path(C_prime, front, n - 1, t, ell)
+                                   : 0;
+    return blend(varied, constant, path);
 }
 
 double ilsai_tipcell_full_leakoff(double C_prime, double age, double spread) {
@@ -197,6 +228,19 @@ double ilsai_tipcell_full_leakoff(double C_prime, double age, double spread) {
     const double p = sqrt(oldest), q = sqrt(newest);
     const double wet = newest > 0.0 || spread <= 0.0 ? 1.0 : oldest / (2.0 * spread);
     return p > 0.0 ? 4.0 / 3.0 * C_prime * wet * (oldest + p * q + newest) / (p + q) : 0.0;
+}
+
+/* With u = p + q of above the mean of the root is u / 2 + (2/3) e^2 / u^3. */
+double ilsai_tipcell_full_leakoff_step(double C_prime, double age, double dt, double spread) {
+    if (!(age > spread))
+        return ilsai_tipcell_full_leakoff(C_prime, age + dt, spread) -
+               ilsai_tipcell_full_leakoff(C_prime, age, spread);
+    const double p0 = sqrt(age + spread), p1 = sqrt(age + dt + spread);
+    const double q0 = sqrt(age - spread), q1 = sqrt(age + dt - spread);
+    const double u0 = p0 + q0, u1 = p1 + q1, e0 = spread / (u0 * u0), e1 = spread / (u1 * u1);
+    const double rise = dt / (p0 + p1) + dt / (q0 + q1);
+    const double less = 4.0 / 3.0 * e0 * e1 * (u1 / u0 + 1.0 + u0 / u1);
+    return C_prime * rise * (1.0 - less);
 }
 
 double ilsai_tipcell_spread(const tipcell_front *front, double T) {

@@ -40,6 +40,12 @@ typedef struct tipcell_history {
 void ilsai_tipcell_enter(tipcell_history *history, double t_A);
 
 /*
+ * Says anew where the front was at the last knot: ell is held between that of the knot before and
+ * most. The knot of the entry stays.
+ */
+void ilsai_tipcell_amend(tipcell_history *history, double ell, double most);
+
+/*
  * Appends the front at distance ell at time t, later than the last knot; an ell below the last is
  * taken as the last. A full history drops the inner knot whose loss changes the path least.
  */
@@ -56,6 +62,10 @@ void ilsai_tipcell_record(tipcell_history *history, double t, double ell);
 double ilsai_tipcell_leakoff(double C_prime, const tipcell_front *front,
                              const tipcell_history *history);
 
+/* The part of it that has leaked since the last knot but one, by one and the same formula. */
+double ilsai_tipcell_leakoff_last(double C_prime, const tipcell_front *front,
+                                  const tipcell_history *history);
+
 /*
  * The same for a path of any number of knots, without the choice: the front moves linearly from
  * (t[k], ell[k]) to (t[k + 1], ell[k + 1]) and the last knot is the present. front->ell plays no
@@ -71,6 +81,10 @@ double ilsai_tipcell_leakoff_path(double C_prime, const tipcell_front *front, in
  * of the same variance.
  */
 double ilsai_tipcell_full_leakoff(double C_prime, double age, double spread);
+
+/* What leaks of that in the time dt from the age on, without cancellation. */
+double ilsai_tipcell_full_leakoff_step(double C_prime, double age, double dt, double spread);
+
 double ilsai_tipcell_spread(const tipcell_front *front, double T);
 
 #endif

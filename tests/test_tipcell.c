@@ -478,6 +478,12 @@ static void full_cells_without_spread(void **unused) {
                     1e-15);
     }
     assert_true(ilsai_tipcell_full_leakoff(3, 0, 0) == 0);
+    for (double age = 0; age < 20; age += 0.3)
+        for (double dt = 1e-3; dt < 100; dt *= 10) {
+            double by_ends =
+                ilsai_tipcell_full_leakoff(3, age + dt, 2) - ilsai_tipcell_full_leakoff(3, age, 2);
+            assert_true(fabs(ilsai_tipcell_full_leakoff_step(3, age, dt, 2) / by_ends - 1) < 1e-10);
+        }
     /* a front still within the cell leaves a part of it dry */
     assert_true(fabs(ilsai_tipcell_full_leakoff(3, 0, 2) - 6 * sqrt(2.0) / 3) < 1e-14);
     assert_true(ilsai_tipcell_full_leakoff(3, -2, 2) == 0);
