@@ -285,7 +285,7 @@ coverage: ## the lines and branches of src/ that the tests reach
 	    | awk -f tests/coverage.awk
 
 # ---- Programs that measure and draw -------------------------------------------------------------
-.PHONY: bench accuracy demo figures
+.PHONY: bench accuracy demo figures paper-figures
 bench: $(BENCH_PROGRAMS) ## the quick programs of bench/
 	@set -e; for b in $(BENCH_QUICK); do echo "== bench_$$b"; $(BIN)/bench_$$b; done
 
@@ -299,6 +299,14 @@ demo: $(BIN)/ilsa-run ## the paper's three-layer fracture to 3600 s, and its fig
 
 figures: ## the figures of every scene that was run into out/
 	@set -e; for h in $(wildcard out/*/history.csv); do examples/figures.sh $${h%/history.csv}; done
+
+# Section 5.2: a scene is run again when it or ilsa-run has changed.
+PAPER = $(foreach g,symmetric asymmetric drop,$(foreach phi,1e-4 1e-2 1,$(g)_phi$(phi)))
+out/paper/%/history.csv: examples/scenes/%.ini $(BIN)/ilsa-run
+	$(BIN)/ilsa-run $< --quiet --out $(@D)
+
+paper-figures: $(PAPER:%=out/paper/%/history.csv) ## Figs. 8 to 20 of the paper, in out/paper
+	examples/paper_figures.sh out/paper
 
 # ---- Install ------------------------------------------------------------------------------------
 .PHONY: install uninstall

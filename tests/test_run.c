@@ -1,5 +1,6 @@
 /* ilsa-run from a scene to its result files. */
 #include "csv.h"
+#include "host.h"
 #include "program.h"
 
 #include <setjmp.h>
@@ -555,6 +556,31 @@ static void figures_are_drawn(void **state) {
     assert_int_equal(program_run(command, output, sizeof output), 1);
 }
 
+/* The figures of the paper from nine runs, here nine times the same. */
+static void paper_figures_are_drawn(void **state) {
+    (void)state;
+    char command[600], here[300];
+    if (program_run("command -v gnuplot", output, sizeof output) != 0)
+        skip();
+    assert_non_null(getcwd(here, sizeof here));
+    assert_int_equal(
+        program_run("mkdir paper && cd paper && for g in symmetric asymmetric drop; do "
+                    "for p in 1e-4 1e-2 1; do ln -s ../out ${g}_phi$p; done; done",
+                    output, sizeof output),
+        0);
+    snprintf(command, sizeof command, "'%s/examples/paper_figures.sh' paper", here);
+    if (host_long()) {
+        assert_int_equal(program_run(command, output, sizeof output), 0);
+        assert_string_equal(output, "figures in paper: fig08 to fig20 (.png, .svg)\n");
+        assert_int_equal(program_run("ls paper/*.png paper/*.svg | wc -l", output, sizeof output),
+                         0);
+        assert_int_equal(strtol(output, NULL, 10), 26);
+    }
+    assert_int_equal(program_run("rm paper/symmetric_phi1e-4", output, sizeof output), 0);
+    assert_int_equal(program_run(command, output, sizeof output), 1);
+    assert_non_null(strstr(output, "paper/symmetric_phi1e-4/plot.gp is missing"));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(closing_line),
@@ -570,6 +596,7 @@ int main(void) {
         cmocka_unit_test(summary_says),
         cmocka_unit_test(files_of_a_run),
         cmocka_unit_test(figures_are_drawn),
+        cmocka_unit_test(paper_figures_are_drawn),
         cmocka_unit_test(nothing_modelled_in_vain),
         cmocka_unit_test(options_are_heeded),
         cmocka_unit_test(earlier_results_go),

@@ -4,4 +4,4 @@ if (format eq "png") {
 } else {
     set terminal svg size ARG1, ARG2 font "sans,13" background "white" dynamic
 }
-set output run."/".figure.".".format
+set output file.".".format

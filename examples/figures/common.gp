@@ -1,22 +1,21 @@
-# What all figures share: the run, units, colours, the terminal. From the environment: RUN, SCRIPTS,
-# FORMAT, FIGURE, UNITS.
-run = system("echo \"$RUN\"")
+# What all figures share: runs, units, colours, the terminal. From the environment: RUNS, their
+# directories, each in quotes; SCRIPTS; FILE without its ending; FORMAT. And where they are set:
+# TITLE; LABELS, what the runs are called where there are several; UNITS; AXES of lines; PANELS of
+# history.
+runs = system("echo \"$RUNS\"")
 scripts = system("echo \"$SCRIPTS\"")
+file = system("echo \"$FILE\"")
 format = system("echo $FORMAT")
-figure = system("echo $FIGURE")
-load run."/plot.gp"
+title = system("echo \"$TITLE\"")
+labels = system("echo \"$LABELS\"")
 override = system("echo $UNITS")
-if (strlen(override)) units = override
+axes = system("echo $AXES")
+panels = system("echo $PANELS")
 
-si = units eq "SI"
-x_label = si ? "x (m)" : "x"
-y_label = si ? "y (m)" : "y"
-t_label = si ? "t (s)" : "t"
-w_label = si ? "width (mm)" : "width"
-p_label = si ? "fluid pressure (MPa)" : "fluid pressure"
-w_scale = si ? 1e3 : 1
-p_scale = si ? 1e-6 : 1
-unit_note = si ? "" : ", in the scene's units"
+several = words(runs) > 1
+title_or(own) = strlen(title) ? title : own.(si ? "" : ", in the scene's units")
+label_of(r) = r <= words(labels) ? word(labels, r) : word(runs, r)
+
 time_text(i) = "t = ".word(times, i).(si ? " s" : "")
 
 # The numbers of a list in plot.gp are strings.
@@ -30,4 +29,5 @@ rgb(k, mt, m) = 65536 * byte(k) + 256 * byte(mt) + byte(m)
 set datafile separator ","
 set datafile columnheaders
 set encoding utf8
-
+set format "%h"
+call scripts."/run.gp" "1"

@@ -32,6 +32,13 @@ static void put_name(FILE *stream, const char *path) {
     fputs("\"\n", stream);
 }
 
+static void put_list(FILE *stream, const char *name, const double *values, int count) {
+    fprintf(stream, "%s = \"", name);
+    for (int i = 0; i < count; i++)
+        fprintf(stream, "%.10g ", values[i]);
+    fputs("\"\n", stream);
+}
+
 static int write_plot(const outputs *o, const char *directory, const scene *sc) {
     outfile file;
     if (!outfile_open(&file, directory, "plot.gp"))
@@ -53,10 +60,9 @@ static int write_plot(const outputs *o, const char *directory, const scene *sc) 
     fputs("\"\nloops = \"", s);
     for (int i = 0; i < o->count; i++)
         fprintf(s, "%d ", o->list[i].loops);
-    fputs("\"\ninterfaces = \"", s);
-    for (int i = 0; i < sc->interface_count; i++)
-        fprintf(s, "%.10g ", sc->interfaces[i]);
     fputs("\"\n", s);
+    put_list(s, "interfaces", sc->interfaces, sc->interface_count);
+    put_list(s, "sigma", sc->sigma, sc->interface_count + 1);
     return outfile_close(&file);
 }
 
