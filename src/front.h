@@ -6,7 +6,10 @@
 #define ILSAI_FRONT_H
 
 #include "grid.h"
+#include "jump.h"
 #include "tip.h"
+
+enum { FRONT_JUMPS = 4 };
 
 /* A survey cell: where the marching starts. */
 typedef struct front_seed {
@@ -22,6 +25,8 @@ typedef struct front_seed {
     double ds_inner;     /* and by that of the inner cell */
     int inner;    /* cell behind it that tells how the width departs from the asymptote, -1: none */
     double depth; /* how much deeper that lies */
+    int jumps;    /* of the stress on the normal around the cell */
+    stress_jump jump[FRONT_JUMPS];
     double curvature; /* of the front, positive where it is convex; 0: not known */
 } front_seed;
 

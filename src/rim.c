@@ -139,12 +139,30 @@ static void leak_at_front(ilsa_solver *s, const front_cell *c, double dt) {
     set_leak(s, c->cell, leak_for(s, c, dt, &record->history));
 }
 
-/* Mean width (4.18); in a cell that has just filled it is the first guess of the coupled solve. */
-static double mean_width(const ilsa_solver *s, const front_cell *c) {
-    tipcell_front at = {c->ell, c->cos_a, c->sin_a, s->g.dx, s->g.dy};
+/* Mean over the cell of what the jumps of the stress behind its front add, from the seeds' sides.
+ */
+static double jump_width(const ilsa_solver *s, const front_cell *c, const tipcell_front *at) {
+    double sum = 0;
+    for (int p = 0; p < c->from.count; p++) {
+        const front_seed *seed = &s->seeds[c->from.seed[p]];
+        double moved = at->ell - c->ell;
+        for (int k = 0; k < seed->jumps; k++) {
+            double d = seed->s + seed->jump[k].depth + moved;
+            sum += c->from.weight[p] * seed->jump[k].height * ilsai_tipcell_jump_volume(d, at);
+        }
+    }
+    return sum / (s->g.dx * s->g.dy);
+}
+
+/*
+ * Mean width (4.18) with the front at ell; in a cell that has just filled it is the first guess of
+ * the coupled solve.
+ */
+static double mean_width(const ilsa_solver *s, const front_cell *c, double ell, double V) {
+    tipcell_front at = {ell, c->cos_a, c->sin_a, s->g.dx, s->g.dy};
     double K_I = s->material.E_prime * c->K_num / c->K_den;
-    double V = c->V > 0 ? c->V : 0;
-    return ilsai_tipcell_volume(&s->material, V, K_I, &at) / (s->g.dx * s->g.dy);
+    double w = ilsai_tipcell_volume(&s->material, V > 0 ? V : 0, K_I, &at) / (s->g.dx * s->g.dy);
+    return fmax(w + jump_width(s, c, &at), ILSAI_JUMP_LEFT * w);
 }
 
 static void set_cell(ilsa_solver *s, const front_cell *c, double dt, int hold) {
@@ -157,7 +175,7 @@ static void set_cell(ilsa_solver *s, const front_cell *c, double dt, int hold) {
         return;
     }
     if (kind == ILSA_CELL_TIP || was != ILSA_CELL_CHANNEL) {
-        set_width(s, c->cell, mean_width(s, c));
+        set_width(s, c->cell, mean_width(s, c, c->ell, c->V));
     }
     if (ilsai_has_leakoff(s)) {
         leak_at_front(s, c, dt);
@@ -249,7 +267,7 @@ static answer differentiate(ilsa_solver *s, const front_cell *c, double dt) {
     moved.V += small / dt;
     answer a = {0, 0, 0};
     if (s->trial.kind[c->cell] == ILSA_CELL_TIP) {
-        a.width = (mean_width(s, &moved) - s->trial.width[c->cell]) / small;
+        a.width = (mean_width(s, c, moved.ell, moved.V) - s->trial.width[c->cell]) / small;
     } else {
         a.pressure = edge_of(s, c).slope * s->trial.width[c->cell];
     }

@@ -133,7 +133,7 @@ static int try_inner(const ilsa_solver *s, front_seed *seed, int i, int j, vecto
     double along = -(di * s->mesh.dx * n.x + dj * s->mesh.dy * n.y);
     double across = -di * s->mesh.dx * n.y + dj * s->mesh.dy * n.x;
     double depth = along - 0.5 * seed->curvature * across * across;
-    if (s->field.kind[cell] < least || !(depth > 0) || s->sigma[cell] != s->sigma[seed->cell]) {
+    if (s->field.kind[cell] < least || !(depth > 0)) {
         return 0;
     }
     seed->inner = ilsai_grid_fold(&s->g, i + di, j + dj);
@@ -154,7 +154,54 @@ static void find_inner(const ilsa_solver *s, front_seed *seed, int i, int j, vec
     }
 }
 
+/* Distance along the ray from a cell's centre to its k-th next edge, on one axis. */
+static double edge_distance(double direction, double size, int k) {
+    return direction != 0 ? (k + 0.5) * size / fabs(direction) : INFINITY;
+}
+
+/* Notes the jump between two cells on the ray; height is of the stress nearer to the front. */
+static void note_jump(const ilsa_solver *s, front_seed *seed, double depth, int ahead, int behind) {
+    double height = (s->sigma[ahead] - s->sigma[behind]) / s->material.E_prime;
+    if (height != 0 && seed->jumps < FRONT_JUMPS) {
+        seed->jump[seed->jumps++] = (stress_jump){depth, height};
+    }
+}
+
+/*
+ * The jumps of the stress from the centre of (i, j) along n for a length; sign 1: towards the
+ * front, -1: away from it.
+ */
+static void find_jumps(const ilsa_solver *s, front_seed *seed, int i, int j, vector n, int sign,
+                       double length) {
+    int a = i, b = j, step_x = n.x * sign > 0 ? 1 : -1, step_y = n.y * sign > 0 ? 1 : -1;
+    for (int kx = 0, ky = 0;;) {
+        double to_x = edge_distance(n.x, s->mesh.dx, kx), to_y = edge_distance(n.y, s->mesh.dy, ky);
+        double next = fmin(to_x, to_y);
+        int from = b * s->mesh.nx + a;
+        kx += to_x == next;
+        ky += to_y == next;
+        a += to_x == next ? step_x : 0;
+        b += to_y == next ? step_y : 0;
+        if (!(next < length) || !on_mesh(s, a, b)) {
+            return;
+        }
+        int to = b * s->mesh.nx + a;
+        note_jump(s, seed, -sign * next, sign > 0 ? to : from, sign > 0 ? from : to);
+    }
+}
+
+/* The nearest behind the cell count first; in front, those that the step may reach. */
+static void set_jumps(const ilsa_solver *s, front_seed *seed, int i, int j, vector n) {
+    seed->jumps = 0;
+    if (n.x != 0 || n.y != 0) {
+        double cell = s->mesh.dx * fabs(n.x) + s->mesh.dy * fabs(n.y);
+        find_jumps(s, seed, i, j, n, 1, seed->s0 + ILSAI_ADVANCE_MAX * seed->h);
+        find_jumps(s, seed, i, j, n, -1, ILSAI_JUMP_REACH * cell);
+    }
+}
+
 void ilsai_shape_set(const ilsa_solver *s, front_seed *seeds, int count) {
+    int varies = ilsai_stress_varies(s->stress);
     for (int k = 0; k < count; k++) {
         front_seed *seed = &seeds[k];
         int i = seed->cell % s->mesh.nx, j = seed->cell / s->mesh.nx;
@@ -163,5 +210,8 @@ void ilsai_shape_set(const ilsa_solver *s, front_seed *seeds, int count) {
         seed->sin_a = fabs(n.y);
         seed->curvature = curvature_at(s, i, j, n, seed->s0);
         find_inner(s, seed, i, j, n);
+        if (varies) {
+            set_jumps(s, seed, i, j, n);
+        }
     }
 }

@@ -7,7 +7,7 @@
 
 #include "state.h"
 
-/* Sets curvature, inner cell and depth of every seed. */
+/* Sets normal, curvature, inner cell, depth and stress jumps of every seed. */
 void ilsai_shape_set(const ilsa_solver *s, front_seed *seeds, int count);
 
 #endif

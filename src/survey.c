@@ -18,6 +18,21 @@ edge_front ilsai_survey_front(const front_seed *seed) {
     return (edge_front){seed->s, seed->cos_a, seed->sin_a, seed->exponent};
 }
 
+double ilsai_survey_jump_width(const front_seed *seed, double s) {
+    double sum = 0;
+    for (int k = 0; k < seed->jumps; k++) {
+        sum += seed->jump[k].height * ilsai_jump_width(s, seed->s + seed->jump[k].depth);
+    }
+    return sum;
+}
+
+/* What of the mean width of a cell at distance s from the seed's front no jump has brought. */
+static double smooth_width(const ilsa_solver *s, const front_seed *seed, int cell,
+                           double distance) {
+    double w = s->trial.width[cell];
+    return fmax(w - ilsai_survey_jump_width(seed, distance), ILSAI_JUMP_LEFT * w);
+}
+
 /*
  * The first term of the width at the centre of a survey cell, and its derivatives by the widths of
  * two cells, which are means.
@@ -30,7 +45,7 @@ typedef struct first_term {
 static first_term split_width(const ilsa_solver *s, const front_seed *seed) {
     edge_front seen = ilsai_survey_front(seed);
     double mean = ilsai_edge_mean(s->mesh.dx, s->mesh.dy, &seen);
-    double w = s->trial.width[seed->cell] / mean;
+    double w = smooth_width(s, seed, seed->cell, seed->s) / mean;
     first_term out = {w, 1 / mean, 0};
     if (seed->inner < 0) {
         return out;
@@ -42,7 +57,7 @@ static first_term split_width(const ilsa_solver *s, const front_seed *seed) {
     }
     seen.s = deep;
     there *= ilsai_edge_mean(s->mesh.dx, s->mesh.dy, &seen);
-    double inner = s->trial.width[seed->inner], q = inner * here / (w * there);
+    double inner = smooth_width(s, seed, seed->inner, deep), q = inner * here / (w * there);
     double below = deep - q * seed->s, limit = ILSAI_NEXT_TERM_MAX;
     double term = below > 0 ? (q - 1) * seed->s / below : limit;
     double slope = seed->s * seed->depth / (below * below); /* d term / d q */

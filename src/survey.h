@@ -17,6 +17,9 @@ double ilsai_survey_size(const ilsa_solver *s, const grid *g, int i, int j);
 /* Sets the exponent of a seed for its distance and V. */
 void ilsai_survey_settle(const ilsa_solver *s, front_seed *seed);
 
+/* Width that the jumps of the stress add at a distance s from the seed's front. */
+double ilsai_survey_jump_width(const front_seed *seed, double s);
+
 /* The front as the survey cell sees it, at the seed's distance and V. */
 edge_front ilsai_survey_front(const front_seed *seed);
 

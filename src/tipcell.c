@@ -1,5 +1,6 @@
 #include "tipcell.h"
 
+#include "jump.h"
 #include <math.h>
 
 /* Change of velocity that counts, and the width of the passage about it. */
@@ -37,12 +38,15 @@ double ilsai_tipcell_area(const tipcell_front *front) {
     return c.length * (c.H - 0.5 * rest * (rest / c.h));
 }
 
+/* The zeroth moment of a width over [0, xi], xi > 0. */
+typedef double zeroth_moment(const void *width, double xi);
+
 /*
  * Mean of M0(xi) over the strip [far - h, far], M0(xi < 0) = 0. The nodes are those of
  * Gauss-Legendre in r = xi^(1/3), where M0 is smooth up to the front (r^(9/2) to r^5 there): error
  * 4e-10 with 7, and with 4 where the front is far.
  */
-static double mean_M0(const tip_law *law, double V, double K_I, double h, double far) {
+static double mean_M0(zeroth_moment *M0, const void *of, double h, double far) {
     static const double node[11] = {
         0.069431844202973712, 0.33000947820757187, 0.66999052179242813, 0.93056815579702629,
         0.025446043828620738, 0.12923440720030278, 0.29707742431130142, 0.5,
@@ -56,23 +60,48 @@ static double mean_M0(const tip_law *law, double V, double K_I, double h, double
     const int first = width < 0.3 * far ? 0 : 4, end = first ? 11 : 4;
     double sum = 0.0;
     for (int k = first; k < end; k++) {
-        const double r = r0 + dr * node[k], xi = r * r * r;
-        const double w = V > 0.0 ? ilsai_tip_width(law, V, xi) : K_I / law->E_prime * sqrt(xi);
-        double M0, M1;
-        ilsai_tip_moments(law, V, xi, w, &M0, &M1);
-        sum += weight[k] * 3.0 * r * r / norm * M0;
+        const double r = r0 + dr * node[k];
+        sum += weight[k] * 3.0 * r * r / norm * M0(of, r * r * r);
     }
     return width < h ? sum * (width / h) : sum;
 }
 
-double ilsai_tipcell_volume(const tip_law *law, double V, double K_I, const tipcell_front *front) {
+/* Integral over the wet part of the cell, by strips. */
+static double wet_volume(zeroth_moment *M0, const void *of, const tipcell_front *front) {
     const tipcell_chord c = chord_of(front);
     if (front->ell <= 0.0)
         return 0.0;
-    double mean = mean_M0(law, V, K_I, c.h, front->ell);
+    double mean = mean_M0(M0, of, c.h, front->ell);
     if (front->ell > c.H)
-        mean -= mean_M0(law, V, K_I, c.h, front->ell - c.H);
+        mean -= mean_M0(M0, of, c.h, front->ell - c.H);
     return c.length * mean;
+}
+
+/* The asymptote (3.15) behind a moving front, or with the stress intensity of one at rest. */
+typedef struct asymptote {
+    const tip_law *law;
+    double V, K_I;
+} asymptote;
+
+static double asymptote_M0(const void *width, double xi) {
+    const asymptote *a = width;
+    const double w =
+        a->V > 0.0 ? ilsai_tip_width(a->law, a->V, xi) : a->K_I / a->law->E_prime * sqrt(xi);
+    double M0, M1;
+    ilsai_tip_moments(a->law, a->V, xi, w, &M0, &M1);
+    return M0;
+}
+
+double ilsai_tipcell_volume(const tip_law *law, double V, double K_I, const tipcell_front *front) {
+    return wet_volume(asymptote_M0, &(asymptote){law, V, K_I}, front);
+}
+
+static double jump_M0(const void *width, double xi) {
+    return ilsai_jump_moment(xi, *(const double *)width);
+}
+
+double ilsai_tipcell_jump_volume(double d, const tipcell_front *front) {
+    return wet_volume(jump_M0, &d, front);
 }
 
 void ilsai_tipcell_enter(tipcell_history *history, double t_A) {

@@ -70,6 +70,10 @@
 #define ILSAI_SURVEY_SECANTS 3
 #define ILSAI_SURVEY_CLOSE   1e-9
 #define ILSAI_SURVEY_SLOPE   0.7
+/* Survey: how far behind the cell steps of the stress are looked for, in cells. */
+#define ILSAI_JUMP_REACH 6.0
+/* Survey: least part of a width that is left for the asymptote once such steps have theirs. */
+#define ILSAI_JUMP_LEFT 0.02
 /* Width behind the tip: largest part that the term after the asymptote may have. */
 #define ILSAI_NEXT_TERM_MAX 0.3
 
