@@ -66,12 +66,17 @@ static int nearest_survey(const ilsa_solver *s, int i, int j, double x, double y
     return best;
 }
 
+/*
+ * The place in the triangle of all three processes. The width of a poorer tip model is no width in
+ * it: there the place is that of the full asymptote at the cell's distance and velocity.
+ */
 static ilsa_tip_regime regime_at(const ilsa_solver *s, int cell) {
     ilsa_tip_regime regime = {.N_k = 1, .x = 1};
     if (cell >= 0) {
-        double distance = -s->field.level[cell];
-        ilsa_tip_triangle(&s->material, s->field.speed[cell], distance, s->field.width[cell],
-                          &regime);
+        double distance = -s->field.level[cell], V = s->field.speed[cell];
+        double w = s->def.tip == ILSA_TIP_FULL ? s->field.width[cell]
+                                               : ilsai_tip_width(&s->material, V, distance);
+        ilsa_tip_triangle(&s->material, V, distance, w, &regime);
     }
     return regime;
 }

@@ -134,7 +134,7 @@ static double mean_width(const ilsa_solver *s, const front_cell *c) {
     tipcell_front at = {c->ell, c->cos_a, c->sin_a, s->g.dx, s->g.dy};
     double K_I = s->material.E_prime * c->K_num / c->K_den;
     double V = c->V > 0 ? c->V : 0;
-    return ilsai_tipcell_volume(&s->material, V, K_I, &at) / (s->g.dx * s->g.dy);
+    return ilsai_tipcell_volume(&s->asymptote, V, K_I, &at) / (s->g.dx * s->g.dy);
 }
 
 static void set_cell(ilsa_solver *s, const front_cell *c, double dt, int hold) {

@@ -28,8 +28,8 @@ static first_term split_width(const ilsa_solver *s, const front_seed *seed) {
     }
     double deep = seed->s + seed->depth, here = sqrt(seed->s), there = sqrt(deep);
     if (seed->V > 0) {
-        here = ilsai_tip_width(&s->material, seed->V, seed->s);
-        there = ilsai_tip_width(&s->material, seed->V, deep);
+        here = ilsai_tip_width(&s->asymptote, seed->V, seed->s);
+        there = ilsai_tip_width(&s->asymptote, seed->V, deep);
     }
     double inner = s->trial.width[seed->inner], q = inner * here / (w * there);
     double below = deep - q * seed->s, limit = ILSAI_NEXT_TERM_MAX;
@@ -52,7 +52,7 @@ double ilsai_survey_width(const ilsa_solver *s, const front_seed *seed) {
 /* One evaluation of (4.9), the second term taken at the distance and velocity that seed has. */
 static double distance_for(const ilsa_solver *s, front_seed *seed, double dt) {
     first_term w = split_width(s, seed);
-    tip_front at = ilsai_tip_distance(&s->material, w.width, seed->s0, dt);
+    tip_front at = ilsai_tip_distance(&s->asymptote, w.width, seed->s0, dt);
     seed->ds_dw = at.ds_dw * w.by_cell;
     seed->ds_inner = at.ds_dw * w.by_inner;
     return at.s;
