@@ -74,7 +74,7 @@ static void models_without_leakoff_agree(void **state) {
         solver[tip] = host_started(&scene, 1);
         host_steps(solver[tip], 5);
     }
-    const size_t size = 41 * 41 * sizeof(double);
+    const size_t size = (size_t)41 * 41 * sizeof(double);
     assert_memory_equal(host_width(solver[0]), host_width(solver[1]), size);
     assert_memory_equal(host_pressure(solver[0]), host_pressure(solver[1]), size);
     ilsa_solver_destroy(&solver[0]);
@@ -130,7 +130,7 @@ static void all_start_from_the_same_penny(void **state) {
     }
     for (int tip = 1; tip < 3; tip++)
         assert_memory_equal(host_width(solver[0]), host_width(solver[tip]),
-                            41 * 41 * sizeof(double));
+                            (size_t)41 * 41 * sizeof(double));
     for (int tip = 0; tip < 3; tip++)
         ilsa_solver_destroy(&solver[tip]);
 }
