@@ -43,8 +43,8 @@ typedef struct parts {
     ilsa_stress *stress;
 } parts;
 
-static ilsa_solver *create(parts *p, ilsa_status status, double rate, double radius) {
-    const ilsa_source_def well = {.rate = rate};
+static ilsa_solver *create(parts *p, ilsa_status status, const layer_how *how) {
+    const ilsa_source_def well = {.rate = how->rate};
     ilsa_solver_def d = ilsa_solver_def_default();
     ilsa_solver *solver = NULL;
     d.mesh = p->mesh;
@@ -52,8 +52,9 @@ static ilsa_solver *create(parts *p, ilsa_status status, double rate, double rad
     d.stress = p->stress;
     d.sources = &well;
     d.source_count = 1;
+    d.tip = how->tip;
     status = status ? status : ilsa_solver_create(&d, &solver);
-    status = status ? status : ilsa_start_radial(solver, radius);
+    status = status ? status : ilsa_start_radial(solver, how->radius);
     if (status != ILSA_OK) {
         fprintf(stderr, "start: %s\n", ilsa_last_error(solver));
         ilsa_solver_destroy(&solver);
@@ -70,7 +71,7 @@ static int count_of(int at_21, int cells) {
     return count + (count - cells) % 2;
 }
 
-ilsa_solver *layer_start(const layer_scene *scene, int cells) {
+ilsa_solver *layer_start_as(const layer_scene *scene, int cells, const layer_how *how) {
     const double dx = height / cells, interfaces[] = {-0.5 * height, 0.5 * height};
     const ilsa_mesh_def grid = {count_of(scene->nx, cells), count_of(scene->ny, cells), dx, dx};
     const ilsa_rock rock = {9.5e9, 0.2, 0.1, 1e6, 0.5 * scene->C_prime};
@@ -82,7 +83,11 @@ ilsa_solver *layer_start(const layer_scene *scene, int cells) {
     status = status ? status : ilsa_material_create(&scaled, &p.material);
     status = status ? status : ilsa_stress_create(&zero, &p.stress);
     status = status ? status : ilsa_stress_set_layers(p.stress, 2, interfaces, scene->sigma);
-    return create(&p, status, 0.01, 5);
+    return create(&p, status, how);
+}
+
+ilsa_solver *layer_start(const layer_scene *scene, int cells) {
+    return layer_start_as(scene, cells, &(layer_how){ILSA_TIP_FULL, 0.01, 5});
 }
 
 ilsa_solver *fig_start(const fig_scene *scene) {
@@ -91,5 +96,5 @@ ilsa_solver *fig_start(const fig_scene *scene) {
     parts p = {0};
     ilsa_status status = ilsa_mesh_create(&grid, &p.mesh);
     status = status ? status : ilsa_material_create(&scaled, &p.material);
-    return create(&p, status, 1, 5 * scene->dx);
+    return create(&p, status, &(layer_how){ILSA_TIP_FULL, 1, 5 * scene->dx});
 }

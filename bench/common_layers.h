@@ -23,6 +23,13 @@ extern const double layer_times[LAYER_TIMES];
  */
 ilsa_solver *layer_start(const layer_scene *scene, int cells);
 
+/* The same from another penny, with another tip model. */
+typedef struct layer_how {
+    ilsa_tip_model tip;
+    double rate, radius; /* of the source at first, of the penny */
+} layer_how;
+ilsa_solver *layer_start_as(const layer_scene *scene, int cells, const layer_how *how);
+
 /* Section 5.1, Figs. 4 and 5: E' = mu' = K' = Q = 1, 41 x 41 cells, a penny of 5 cells. */
 typedef struct fig_scene {
     const char *name;

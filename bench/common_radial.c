@@ -154,7 +154,7 @@ static ilsa_solver *failed(const char *what, ilsa_solver *solver) {
 
 static ilsa_solver *create(const radial_def *def) {
     const ilsa_material_def scaled = {1, def->law.mu_prime, def->law.K_prime, def->law.C_prime};
-    const ilsa_source_def well = {.rate = 1};
+    const ilsa_source_def well = {.rate = def->rate > 0 ? def->rate : 1};
     const int half = (int)ceil(def->mesh_cells) + 2;
     const ilsa_mesh_def grid = {2 * half + 1, 2 * (int)ceil(half * def->aspect) + 1, def->dx,
                                 def->dx / def->aspect};
@@ -171,6 +171,7 @@ static ilsa_solver *create(const radial_def *def) {
     d.step_cells = def->step_cells;
     d.level = def->level ? def->level : d.level;
     d.coarsen = def->coarsen;
+    d.tip = def->tip;
     status = status ? status : ilsa_solver_create(&d, &solver);
     ilsa_mesh_destroy(&mesh);
     ilsa_material_destroy(&material);

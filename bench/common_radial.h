@@ -30,6 +30,8 @@ typedef struct radial_def {
     double step_cells; /* 0: by level */
     int level;         /* 0: the default */
     int coarsen;
+    ilsa_tip_model tip;
+    double rate; /* at first; 0: 1 */
 } radial_def;
 
 /* What a front is like. */

@@ -66,12 +66,16 @@ static int nearest_survey(const ilsa_solver *s, int i, int j, double x, double y
     return best;
 }
 
+/*
+ * The place in the triangle of the full asymptote at the cell's distance and velocity. The width of
+ * the cell itself is a mean, and holds what is no part of the asymptote.
+ */
 static ilsa_tip_regime regime_at(const ilsa_solver *s, int cell) {
     ilsa_tip_regime regime = {.N_k = 1, .x = 1};
     if (cell >= 0) {
-        double distance = -s->field.level[cell];
-        ilsa_tip_triangle(&s->material, s->field.speed[cell], distance, s->field.width[cell],
-                          &regime);
+        double distance = -s->field.level[cell], V = s->field.speed[cell];
+        double w = ilsai_tip_width(&s->material, V, distance);
+        ilsa_tip_triangle(&s->material, V, distance, w, &regime);
     }
     return regime;
 }

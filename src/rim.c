@@ -161,7 +161,7 @@ static double jump_width(const ilsa_solver *s, const front_cell *c, const tipcel
 static double mean_width(const ilsa_solver *s, const front_cell *c, double ell, double V) {
     tipcell_front at = {ell, c->cos_a, c->sin_a, s->g.dx, s->g.dy};
     double K_I = s->material.E_prime * c->K_num / c->K_den;
-    double w = ilsai_tipcell_volume(&s->material, V > 0 ? V : 0, K_I, &at) / (s->g.dx * s->g.dy);
+    double w = ilsai_tipcell_volume(&s->asymptote, V > 0 ? V : 0, K_I, &at) / (s->g.dx * s->g.dy);
     return fmax(w + jump_width(s, c, &at), ILSAI_JUMP_LEFT * w);
 }
 
@@ -185,8 +185,8 @@ static void set_cell(ilsa_solver *s, const front_cell *c, double dt, int hold) {
 /* What the self terms of the survey cells and of cells that have filled in the step lack. */
 static edge_term edge_of(const ilsa_solver *s, const front_cell *c) {
     double at = -c->T, V = c->V > 0 ? c->V : 0;
-    double w = V > 0 ? ilsai_tip_width(&s->material, V, at) : 1;
-    edge_front seen = {at, c->cos_a, c->sin_a, ilsai_tip_exponent(&s->material, V, at, w)};
+    double w = V > 0 ? ilsai_tip_width(&s->asymptote, V, at) : 1;
+    edge_front seen = {at, c->cos_a, c->sin_a, ilsai_tip_exponent(&s->asymptote, V, at, w)};
     return ilsai_elasticity_edge(s->elastic, &seen);
 }
 

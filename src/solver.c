@@ -24,6 +24,7 @@ static ilsa_status check_number(const char *name, double value, double low, doub
 static ilsa_status check_options(const ilsa_solver_def *def) {
     ilsa_status status = check_number("source_count", def->source_count, 1, 1000);
     status = status ? status : check_number("level", def->level, 1, ILSAI_LEVELS);
+    status = status ? status : check_number("tip", (double)def->tip, 0, 2);
     status = status ? status : check_number("symmetry", (double)def->symmetry, 0, 4);
     status = status ? status : check_number("linear", (double)def->linear, 0, 2);
     status = status ? status : check_number("product", (double)def->product, 0, 2);
@@ -45,12 +46,22 @@ static ilsa_status check_source(const ilsa_mesh_def *mesh, const ilsa_source_def
                   : ilsai_check_not_negative(ilsai_thread_error(), "source rate", source->rate);
 }
 
+/* A front without toughness has no width under LEFM. */
+static ilsa_status check_tip(const ilsa_solver_def *def) {
+    if (def->tip == ILSA_TIP_TOUGHNESS && def->material->def.K_prime == 0) {
+        return ilsai_fail(ilsai_thread_error(), ILSA_ERR_MISMATCH,
+                          "tip = ILSA_TIP_TOUGHNESS: the material has K_prime = 0: must be > 0");
+    }
+    return ILSA_OK;
+}
+
 static ilsa_status check_def(const ilsa_solver_def *def) {
     error_text *error = ilsai_thread_error();
     ilsa_status status = ilsai_check_pointer(error, "mesh", def->mesh);
     status = status ? status : ilsai_check_pointer(error, "material", def->material);
     status = status ? status : ilsai_check_pointer(error, "sources", def->sources);
     status = status ? status : check_options(def);
+    status = status ? status : check_tip(def);
     for (int k = 0; status == ILSA_OK && k < def->source_count; k++) {
         status = check_source(&def->mesh->def, &def->sources[k]);
     }
@@ -77,6 +88,14 @@ static ilsa_status copy_stress(ilsa_solver *s, const ilsa_stress *stress) {
     return ilsa_stress_create(&zero, &s->stress);
 }
 
+/* The material without the processes that the tip model leaves out. */
+static tip_law asymptote_of(const ilsa_material_def *material, ilsa_tip_model tip) {
+    tip_law law = *material;
+    law.C_prime = tip == ILSA_TIP_FULL ? law.C_prime : 0;
+    law.mu_prime = tip == ILSA_TIP_TOUGHNESS ? 0 : law.mu_prime;
+    return law;
+}
+
 static void set_options(ilsa_solver *s, const ilsa_solver_def *def) {
     static const double step[ILSAI_LEVELS] = ILSAI_LEVEL_STEP;
     static const double tolerance[ILSAI_LEVELS] = ILSAI_LEVEL_TOLERANCE;
@@ -87,6 +106,7 @@ static void set_options(ilsa_solver *s, const ilsa_solver_def *def) {
     s->def.sources = NULL;
     s->mesh = def->mesh->def;
     s->material = def->material->def;
+    s->asymptote = asymptote_of(&s->material, def->tip);
     s->step_cells = def->step_cells > 0 ? def->step_cells : step[def->level - 1];
     s->tolerance = def->tolerance > 0 ? def->tolerance : tolerance[def->level - 1];
 }

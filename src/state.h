@@ -60,6 +60,7 @@ typedef struct point_source {
 struct ilsa_solver {
     ilsa_mesh_def mesh; /* as it is now */
     ilsa_material_def material;
+    tip_law asymptote; /* the part of it that rules the width behind the front: the tip model */
     ilsa_stress *stress;
     point_source *sources;
     ilsa_solver_def def; /* options; its pointers are NULL */

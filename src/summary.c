@@ -167,6 +167,7 @@ ilsa_status ilsa_get_model(const ilsa_solver *solver, ilsa_model *model) {
     grid g = ilsai_solver_grid(solver);
     ilsa_model out = {.leak_off = ilsai_has_leakoff(solver),
                       .toughness = solver->material.K_prime > 0,
+                      .tip = solver->def.tip,
                       .stress_varies = ilsai_stress_varies(solver->stress),
                       .level = solver->def.level,
                       .step_cells = solver->step_cells,

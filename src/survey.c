@@ -52,8 +52,8 @@ static first_term split_width(const ilsa_solver *s, const front_seed *seed) {
     }
     double deep = seed->s + seed->depth, here = sqrt(seed->s), there = sqrt(deep);
     if (seed->V > 0) {
-        here = ilsai_tip_width(&s->material, seed->V, seed->s);
-        there = ilsai_tip_width(&s->material, seed->V, deep);
+        here = ilsai_tip_width(&s->asymptote, seed->V, seed->s);
+        there = ilsai_tip_width(&s->asymptote, seed->V, deep);
     }
     seen.s = deep;
     there *= ilsai_edge_mean(s->mesh.dx, s->mesh.dy, &seen);
@@ -72,8 +72,8 @@ static first_term split_width(const ilsa_solver *s, const front_seed *seed) {
 }
 
 void ilsai_survey_settle(const ilsa_solver *s, front_seed *seed) {
-    double w = seed->V > 0 ? ilsai_tip_width(&s->material, seed->V, seed->s) : 1;
-    seed->exponent = ilsai_tip_exponent(&s->material, seed->V, seed->s, w);
+    double w = seed->V > 0 ? ilsai_tip_width(&s->asymptote, seed->V, seed->s) : 1;
+    seed->exponent = ilsai_tip_exponent(&s->asymptote, seed->V, seed->s, w);
 }
 
 double ilsai_survey_width(const ilsa_solver *s, const front_seed *seed) {
@@ -84,7 +84,7 @@ double ilsai_survey_width(const ilsa_solver *s, const front_seed *seed) {
 static double distance_for(const ilsa_solver *s, front_seed *seed, double dt) {
     ilsai_survey_settle(s, seed);
     first_term w = split_width(s, seed);
-    tip_front at = ilsai_tip_distance(&s->material, w.width, seed->s0, dt);
+    tip_front at = ilsai_tip_distance(&s->asymptote, w.width, seed->s0, dt);
     seed->ds_dw = at.ds_dw * w.by_cell;
     seed->ds_inner = at.ds_dw * w.by_inner;
     return at.s;

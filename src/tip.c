@@ -245,7 +245,7 @@ static inline bool is_plain(double x) {
 }
 
 static inline bool is_plain_law(const tip_law *law) {
-    return is_plain(law->E_prime) && is_plain(law->mu_prime) &&
+    return is_plain(law->E_prime) && (is_plain(law->mu_prime) || law->mu_prime == 0.0) &&
            (is_plain(law->K_prime) || law->K_prime == 0.0) &&
            (is_plain(law->C_prime) || law->C_prime == 0.0);
 }
@@ -264,7 +264,7 @@ static double log_or_minus_infinity(double x) {
 static double width_by_logarithms(const tip_law *law, double V, double s) {
     const double log_s = log(s), log_E = log(law->E_prime);
     const double w_k = log_or_minus_infinity(law->K_prime) + 0.5 * log_s - log_E;
-    if (V <= 0.0)
+    if (V <= 0.0 || law->mu_prime == 0.0)
         return exp(w_k);
     double a = log(2.0) + log_or_minus_infinity(law->C_prime) + 0.5 * (log_s - log(V));
     double m3 = log(law->mu_prime) + log(V) + 2.0 * log_s - log_E;
@@ -281,7 +281,7 @@ double ilsai_tip_width(const tip_law *law, double V, double s) {
     if (!is_plain_law(law) || !is_plain(s) || !(is_plain(V) || V == 0.0))
         return width_by_logarithms(law, V, s);
     const double root = sqrt(s), w_k = law->K_prime / law->E_prime * root;
-    if (V == 0.0)
+    if (V == 0.0 || law->mu_prime == 0.0)
         return w_k;
     return width_solve(&(width_problem){w_k, 2.0 * law->C_prime * root / sqrt(V),
                                         law->mu_prime / law->E_prime * V * s * s});
@@ -305,7 +305,7 @@ static void scaled_variables(const tip_law *law, double V, double s, double w, d
 
 void ilsai_tip_moments(const tip_law *law, double V, double s, double w, double *M0, double *M1) {
     double delta[2] = {0.0, 0.0};
-    if (V > 0.0) {
+    if (V > 0.0 && law->mu_prime > 0.0) {
         double K, C;
         scaled_variables(law, V, s, w, &K, &C);
         delta_p(K, C, (double[]){MOMENT_P0, MOMENT_P1}, delta);
@@ -382,8 +382,24 @@ static bool distance_plain(distance_problem *p, const tip_law *law, double w, do
     return p->K0 < 1.0;
 }
 
+/* (4.9) by toughness alone, whatever the velocity: w = K' s^(1/2) / E'. */
+static tip_front distance_of_toughness(const tip_law *law, double w, double s0, double dt) {
+    double s;
+    if (is_plain_law(law) && is_plain(w)) {
+        const double root = law->E_prime * w / law->K_prime;
+        s = root * root;
+    } else {
+        s = exp(2.0 * (log(law->E_prime) + log(w) - log(law->K_prime)));
+    }
+    if (!(s > s0))
+        return (tip_front){s0, 0.0, 0.0};
+    return (tip_front){s, (s - s0) / dt, 2.0 * s / w};
+}
+
 tip_front ilsai_tip_distance(const tip_law *law, double w, double s0, double dt) {
     distance_problem p;
+    if (law->mu_prime == 0.0)
+        return distance_of_toughness(law, w, s0, dt);
     const bool plain = is_plain_law(law) && is_plain(w) && is_plain(s0) && is_plain(dt);
     if (!(plain ? distance_plain(&p, law, w, s0, dt) : distance_by_logarithms(&p, law, w, s0, dt)))
         return (tip_front){s0, 0.0, 0.0};
@@ -408,8 +424,9 @@ static bool is_not_negative(double x) {
 }
 
 static bool is_law(const tip_law *law) {
-    return is_positive(law->E_prime) && is_positive(law->mu_prime) &&
-           is_not_negative(law->K_prime) && is_not_negative(law->C_prime);
+    const bool ruled = is_positive(law->mu_prime) || (law->mu_prime == 0.0 && law->K_prime > 0.0);
+    return is_positive(law->E_prime) && ruled && is_not_negative(law->K_prime) &&
+           is_not_negative(law->C_prime);
 }
 
 /* A width that ilsa_tip_width can give: zero is one without toughness and at rest. */
@@ -478,7 +495,7 @@ enum { VERTEX_K, VERTEX_MT, VERTEX_M, VERTICES };
 static void vertex_ratios(const tip_law *law, double V, double s, double w,
                           double ratio[VERTICES]) {
     const double log_w = log(w), log_s = log(s), log_E = log(law->E_prime);
-    const double log_V = log(V), log_mu = log(law->mu_prime);
+    const double log_V = log(V), log_mu = log_or_minus_infinity(law->mu_prime);
     const double log_K = log_or_minus_infinity(law->K_prime);
     const double log_C = log(2.0) + log_or_minus_infinity(law->C_prime);
     ratio[VERTEX_K] = log_K - log_E + 0.5 * log_s - log_w;

@@ -4,7 +4,10 @@
 
 #include <ilsa/tip.h>
 
-/* Which processes the tip model includes is carried by the parameters: K_prime = 0, C_prime = 0. */
+/*
+ * Which processes the tip model includes is carried by the parameters: K_prime = 0, C_prime = 0, or
+ * mu_prime = 0 with K_prime > 0 for toughness alone.
+ */
 typedef ilsa_material_def tip_law;
 
 /* Width at distance s > 0 behind a front of velocity V >= 0, (3.15); V = 0: toughness width. */

@@ -286,6 +286,7 @@ static void summary_says(void **state) {
         "mesh                  25 x 23 cells of 1 x 1\n",
         "modelled              elasticity, viscous flow, toughness, leak-off\n",
         "left out              variation of stress (uniform)\n",
+        "tip                   full asymptote\n",
         "solved                one quarter",
         "time                  14\n",
         "rejected ",
@@ -319,6 +320,17 @@ static int run_other(const char *options) {
     char command[256];
     snprintf(command, sizeof command, "ilsa-run other.ini %s", options);
     return program_run(command, output, sizeof output);
+}
+
+/* Another tip model is named, and is not the same fracture. */
+static void tip_model_is_named(void **state) {
+    (void)state;
+    static const char *const texts[] = {"tip                   toughness and viscosity alone\n"};
+    write_scene("[run]\n", "[run]\ntip = toughness-viscosity\n");
+    assert_int_equal(run_other("--out poorer --quiet"), 0);
+    assert_says("poorer/summary.txt", texts, 1);
+    assert_int_not_equal(
+        program_run("cmp -s out/history.csv poorer/history.csv", output, sizeof output), 0);
 }
 
 static void nothing_modelled_in_vain(void **state) {
@@ -597,6 +609,7 @@ int main(void) {
         cmocka_unit_test(files_of_a_run),
         cmocka_unit_test(figures_are_drawn),
         cmocka_unit_test(paper_figures_are_drawn),
+        cmocka_unit_test(tip_model_is_named),
         cmocka_unit_test(nothing_modelled_in_vain),
         cmocka_unit_test(options_are_heeded),
         cmocka_unit_test(earlier_results_go),

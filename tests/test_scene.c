@@ -38,7 +38,8 @@ static const char good[] = "[material]\n"        /* 1 */
                            "dt_initial = 1\n"    /* 24 */
                            "dt_max = 5\n"        /* 25 */
                            "level = 3\n"         /* 26 */
-                           "coarsen = no\n";     /* 27 */
+                           "coarsen = no\n"      /* 27 */
+                           "tip = full\n";       /* 28 */
 
 typedef struct bad_scene {
     const char *name;
@@ -261,9 +262,13 @@ static const bad_scene scenes[] = {
      "26: [run] level = 6: must be a whole number in 1 .. 5"},
     {"run coarsen: another word", "coarsen = no\n", "coarsen = maybe\n",
      "27: [run] coarsen = maybe: must be no or yes"},
+    {"run tip: another word", "tip = full\n", "tip = LEFM\n",
+     "28: [run] tip = LEFM: must be full, toughness-viscosity or toughness"},
+    {"run tip: empty", "tip = full\n", "tip =\n",
+     "28: [run] tip = : must be full, toughness-viscosity or toughness"},
     {"run: unknown key", "coarsen = no\n", "refine = no\n",
      "27: [run] refine = no: unknown key; must be one of t_end, output_times, dt_initial, dt_max, "
-     "level, coarsen"},
+     "level, coarsen, tip"},
 
     {"given twice: a key", "mu = 0.1\n", "mu = 0.1\nmu = 0.1\n",
      "5: [material] mu = 0.1: given twice, first on line 4"},
@@ -272,7 +277,7 @@ static const bad_scene scenes[] = {
     {"unknown section", "[run]\n", "[rock]\ndensity = 2700\n[run]\n",
      "21: [rock]: unknown section; must be material, mesh, stress, injection, injection.2 .. "
      "injection.1000, initial or run"},
-    {"missing section", "[initial]\nradius = 5\n", "", "25: [initial]: missing section"},
+    {"missing section", "[initial]\nradius = 5\n", "", "26: [initial]: missing section"},
     {"key before the first section", "[material]\n", "level = 3\n[material]\n",
      "1: level stands before the first [section]"},
     {"neither heading nor key", "mu = 0.1\n", "viscous\nmu = 0.1\n",
@@ -341,6 +346,26 @@ static void free_form_is_read(void **state) {
                 "[initial]\r\nradius = 5\r\n[run]\r\nt_end = 12");
 }
 
+/* Each tip model runs; that of toughness needs some. */
+static void tip_models_are_read(void **state) {
+    (void)state;
+    static const char *const words[] = {"full", "toughness-viscosity", "toughness"};
+    static const char form[] = "[material]\nE_prime = 1\nmu_prime = 1e-4\nK_prime = %d\n"
+                               "C_prime = 0\n[mesh]\nnx = 21\nny = 21\ndx = 0.1\n"
+                               "[stress]\nsigma = 0\n[injection]\nrate = 1\n"
+                               "[initial]\nradius = 0.5\n[run]\nt_end = 0.3\ntip = %s\n";
+    char text[1024], output[4096];
+    for (int k = 0; k < 3; k++) {
+        snprintf(text, sizeof text, form, 1, words[k]);
+        expect_good(text);
+    }
+    snprintf(text, sizeof text, form, 0, words[2]);
+    program_write("scene.ini", text);
+    assert_int_equal(program_run("ilsa-run scene.ini", output, sizeof output), 2);
+    assert_string_equal(output, "scene.ini:18: [run] tip = toughness: must be full or "
+                                "toughness-viscosity where the toughness is 0\n");
+}
+
 /* The scene's last line may lack its end; a line may be too long; a file may not be text. */
 static void odd_files_are_refused(void **state) {
     (void)state;
@@ -382,7 +407,8 @@ int main(void) {
     enum { BAD = sizeof scenes / sizeof *scenes };
     static const struct CMUnitTest others[] = {
         cmocka_unit_test(good_scene_runs), cmocka_unit_test(free_form_is_read),
-        cmocka_unit_test(odd_files_are_refused), cmocka_unit_test(bad_usage_is_refused)};
+        cmocka_unit_test(tip_models_are_read), cmocka_unit_test(odd_files_are_refused),
+        cmocka_unit_test(bad_usage_is_refused)};
     static struct CMUnitTest tests[BAD + sizeof others / sizeof *others];
     for (size_t i = 0; i < BAD; i++)
         tests[i] = (struct CMUnitTest){.name = scenes[i].name,

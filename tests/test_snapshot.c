@@ -392,7 +392,7 @@ static void other_versions_are_refused(void **state) {
 }
 
 /* One after the other, everything that makes another definition. */
-enum { DEFINITIONS = 23 };
+enum { DEFINITIONS = 25 };
 
 static void alter_numerics(host_scene *scene, int which) {
     ilsa_solver_def *def = &scene->options;
@@ -417,6 +417,12 @@ static void alter_numerics(host_scene *scene, int which) {
         break;
     case 6:
         def->tolerance = 1e-4;
+        break;
+    case 7:
+        def->tip = ILSA_TIP_TOUGHNESS_VISCOSITY;
+        break;
+    case 8:
+        def->tip = ILSA_TIP_TOUGHNESS;
         break;
     default:
         def->dt_max = 100;
@@ -447,14 +453,14 @@ static void alter_sources(host_scene *scene, int which) {
 }
 
 static void alter(host_scene *scene, int which) {
-    if (which < 8)
+    if (which < 10)
         alter_numerics(scene, which);
-    else if (which < 13)
-        alter_material(scene, which - 8);
-    else if (which < 19)
-        alter_mesh(scene, which - 13);
+    else if (which < 15)
+        alter_material(scene, which - 10);
+    else if (which < 21)
+        alter_mesh(scene, which - 15);
     else
-        alter_sources(scene, which - 19);
+        alter_sources(scene, which - 21);
 }
 
 static void other_definitions_are_refused(void **state) {

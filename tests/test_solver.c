@@ -72,6 +72,7 @@ static void defaults_are_as_documented(void **state) {
     assert_true(!def.mesh && !def.material && !def.stress && !def.sources);
     assert_true(def.source_count == 0 && def.level == 3 && def.coarsen == 0);
     assert_true(def.symmetry == ILSA_SYMMETRY_AUTO && def.linear == ILSA_LINEAR_AUTO);
+    assert_true(def.tip == ILSA_TIP_FULL);
     assert_true(def.product == ILSA_PRODUCT_AUTO);
     assert_true(def.step_cells == 0 && def.tolerance == 0 && def.dt_max == 0);
 }
@@ -118,6 +119,9 @@ static void create_refuses_bad_integers(void **state) {
         def = p.def;
         def.level = levels[k];
         check_refused(&def, ILSA_ERR_VALUE, "level");
+        def = p.def;
+        def.tip = (ilsa_tip_model)(k % 2 ? 3 + k : -1 - k);
+        check_refused(&def, ILSA_ERR_VALUE, "tip");
         def = p.def;
         def.symmetry = (ilsa_symmetry)(k % 2 ? 5 + k : -1 - k);
         check_refused(&def, ILSA_ERR_VALUE, "symmetry");
@@ -209,6 +213,23 @@ static void create_refuses_what_does_not_match(void **state) {
         check_refused(&p.def, ILSA_ERR_MISMATCH, "FFT");
     free(values);
     free_parts(&p);
+}
+
+/* LEFM has no front without toughness; the other models do without. */
+static void create_refuses_toughness_without_any(void **state) {
+    (void)state;
+    for (int tip = ILSA_TIP_FULL; tip <= ILSA_TIP_TOUGHNESS; tip++) {
+        host_scene scene = host_penny(1, 31, 0.1);
+        ilsa_solver *solver;
+        scene.material.K_prime = 0;
+        scene.options.tip = (ilsa_tip_model)tip;
+        ilsa_status status = host_try(&scene, &solver);
+        assert_int_equal(status, tip == ILSA_TIP_TOUGHNESS ? ILSA_ERR_MISMATCH : ILSA_OK);
+        if (status)
+            check_message(ilsa_last_error(NULL), "tip = ILSA_TIP_TOUGHNESS");
+        assert_true((solver == NULL) == (status != ILSA_OK));
+        ilsa_solver_destroy(&solver);
+    }
 }
 
 static void destroy_takes_anything(void **state) {
@@ -774,6 +795,7 @@ static void the_model_says_what_is_on(void **state) {
     for (int n = 0; n < 8; n++) {
         host_scene scene = host_penny(n & 1 ? 1 : 0, 31, 0.1);
         scene.material.K_prime = n & 2 ? 1 : 0;
+        scene.options.tip = n & 4 ? ILSA_TIP_TOUGHNESS_VISCOSITY : ILSA_TIP_FULL;
         scene.interfaces = n & 4 ? 1 : 0;
         scene.sigma[1] = 0.1;
         ilsa_solver *solver = host_started(&scene, 0.7);
@@ -782,6 +804,7 @@ static void the_model_says_what_is_on(void **state) {
         assert_int_equal(ilsa_get_model(solver, &model), ILSA_OK);
         assert_int_equal(ilsa_get_trigger_time(solver, &trigger), ILSA_OK);
         assert_int_equal(model.leak_off, n & 1);
+        assert_int_equal(model.tip, scene.options.tip);
         assert_int_equal(trigger != NULL, n & 1);
         assert_int_equal(model.toughness, n & 2 ? 1 : 0);
         assert_int_equal(model.stress_varies, n & 4 ? 1 : 0);
@@ -936,6 +959,7 @@ int main(void) {
         cmocka_unit_test(create_refuses_bad_numbers),
         cmocka_unit_test(create_refuses_bad_sources),
         cmocka_unit_test(create_refuses_what_does_not_match),
+        cmocka_unit_test(create_refuses_toughness_without_any),
         cmocka_unit_test(destroy_takes_anything),
 #ifdef CAN_FAIL
         cmocka_unit_test(create_survives_no_memory),

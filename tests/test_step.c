@@ -1,4 +1,5 @@
 /* The physics of a step: what it must conserve, leave alone, mirror and scale. */
+#include "../src/jump.h"
 #include "failing_realloc.h"
 #include "host.h"
 #include "state.h"
@@ -703,7 +704,21 @@ static void grow_along(ilsa_solver *solver, double half_length) {
     }
 }
 
-/* A front between barriers that it cannot enter stays there with K_I <= K', and runs along. */
+/* Survey cells whose front moves at less than a part of the fastest one's speed. */
+static int slow_cells(ilsa_solver *solver, double part) {
+    const ilsa_survey_point *points;
+    size_t count;
+    int slow = 0;
+    assert_int_equal(ilsa_get_regime(solver, &points, &count), ILSA_OK);
+    for (size_t k = 0; k < count; k++)
+        slow += points[k].V < part * host_summary(solver).V_max;
+    return slow;
+}
+
+/*
+ * A front between barriers that it cannot enter creeps there or stays, and runs along. In the
+ * barrier, the width at rest is that of K_I <= K' and of the lower stress behind.
+ */
 static void barriers_hold_the_front(void **unused) {
     (void)unused;
     host_scene scene = host_penny(0, 81, 0.05);
@@ -712,18 +727,21 @@ static void barriers_hold_the_front(void **unused) {
     ilsa_summary before = host_summary(solver);
     grow_along(solver, 1.6);
     ilsa_summary now = host_summary(solver);
-    print_message("step: between barriers x %.3f, y %.3f, %d of %d survey cells at rest\n",
-                  now.x_max, now.y_max, now.arrested_cells, now.survey_cells);
+    int slow = slow_cells(solver, 0.1);
+    print_message("step: between barriers x %.3f, y %.3f, %d of %d survey cells slow, %d at rest\n",
+                  now.x_max, now.y_max, slow, now.survey_cells, now.arrested_cells);
     assert_true(now.y_max < 0.7 && now.y_max - before.y_max < 0.02);
-    assert_true(now.arrested_cells > now.survey_cells / 3);
+    assert_true(slow > now.survey_cells / 3 && slow < now.survey_cells * 3 / 4);
+    assert_true(now.arrested_cells > 0);
     assert_true(now.V_max > 0 && now.arrested_cells < now.survey_cells);
     const ilsa_survey_point *points;
     size_t count;
     assert_int_equal(ilsa_get_regime(solver, &points, &count), ILSA_OK);
     for (size_t k = 0; k < count; k++) {
-        double K = scene.material.E_prime * points[k].w / sqrt(points[k].s);
+        double s = points[k].s, inside = fabs(points[k].y) - 0.625; /* E' = K' = 1 */
         assert_true(points[k].V >= 0);
-        assert_true(points[k].V > 0 || K <= 1.02 * scene.material.K_prime);
+        assert_true(points[k].V > 0 || inside < 0 ||
+                    points[k].w <= 1.02 * (sqrt(s) + 2 * ilsai_jump_width(s, inside + s)));
         assert_true(points[k].V > 0 || points[k].regime.N_k == 1);
     }
     ilsa_solver_destroy(&solver);

@@ -355,6 +355,64 @@ static void test_distance_grows_with_width(void **state) {
     }
 }
 
+/* Without viscosity the width is that of toughness at any velocity, with or without leak-off. */
+static void test_toughness_alone(void **state) {
+    (void)state;
+    const tip_law laws[] = {{10.0, 0.0, 4.0, 0.0}, {10.0, 0.0, 4.0, 0.7}};
+    for (size_t i = 0; i < sizeof laws / sizeof *laws; i++) {
+        for (double V = 0.0; V < 1e300; V = 1e10 * V + 1e-200) {
+            double M0, M1;
+            ilsa_tip_regime r;
+            assert_below(fabs(width_of(&laws[i], V, 9.0) - 1.2), 1e-15);
+            assert_int_equal(ilsa_tip_moments(&laws[i], V, 9.0, 1.2, &M0, &M1), ILSA_OK);
+            assert_below(relative(M0, 2.0 / 3.0 * 1.2 * 9.0), 1e-15);
+            assert_below(relative(M1, 2.0 / 5.0 * 1.2 * 81.0), 1e-15);
+            assert_int_equal(ilsa_tip_triangle(&laws[i], V, 9.0, 1.2, &r), ILSA_OK);
+            assert_true(r.N_k == 1.0 && r.N_mt == 0.0 && r.N_m == 0.0);
+        }
+    }
+}
+
+/* (4.9) is then (E' w / K')^2, whatever the time, and not below s0. */
+static void test_distance_of_toughness(void **state) {
+    (void)state;
+    const tip_law law = {10.0, 0.0, 4.0, 0.3};
+    double s, V;
+    for (double dt = 1e-6; dt < 1e7; dt *= 1e3) {
+        assert_int_equal(ilsa_tip_distance(&law, 1.2, 4.0, dt, &s, &V), ILSA_OK);
+        assert_below(relative(s, 9.0), 1e-15);
+        assert_below(relative(V, 5.0 / dt), 1e-15);
+        assert_below(relative(ilsai_tip_distance(&law, 1.2, 4.0, dt).ds_dw, 2.0 * 9.0 / 1.2),
+                     1e-15);
+        assert_int_equal(ilsa_tip_distance(&law, 1.2 * (1.0 - 1e-12), 9.0, dt, &s, &V), ILSA_OK);
+        assert_true(s == 9.0 && V == 0.0);
+        assert_true(ilsai_tip_distance(&law, 1.1, 9.0, dt).ds_dw == 0.0);
+    }
+    /* Numbers whose products overflow on the way. */
+    const tip_law huge = {1e200, 0.0, 1e250, 0.0};
+    assert_int_equal(ilsa_tip_distance(&huge, 1e150, 1.0, 1.0, &s, &V), ILSA_OK);
+    assert_below(relative(s, 1e200), 1e-12);
+    assert_below(relative(width_of(&huge, 1.0, s), 1e150), 1e-12);
+    assert_int_equal(ilsa_tip_distance(&law, 1e200, 1.0, 1.0, &s, &V), ILSA_ERR_VALUE);
+    assert_int_equal(ilsa_tip_distance(&law, 1.2, 4.0, 1e-310, &s, &V), ILSA_ERR_VALUE);
+}
+
+/* It is what little viscosity comes to. */
+static void test_little_viscosity(void **state) {
+    (void)state;
+    for (int i = 0; i < 1000; i++) {
+        tip_law law = {power_of_10(-2.0, 2.0), 0.0, power_of_10(-2.0, 2.0), 0.0}, thin = law;
+        const double s = power_of_10(-2.0, 2.0), dt = power_of_10(-2.0, 2.0);
+        const double w = width_of(&law, 1.0, s) * (1.0 + power_of_10(-3.0, 1.0));
+        thin.mu_prime = 1e-25;
+        const tip_front a = ilsai_tip_distance(&law, w, s, dt);
+        const tip_front b = ilsai_tip_distance(&thin, w, s, dt);
+        assert_below(relative(b.s, a.s), 1e-8);
+        assert_below(relative(b.ds_dw, a.ds_dw), 1e-8);
+        assert_below(relative(width_of(&thin, 1.0, s), width_of(&law, 1.0, s)), 1e-12);
+    }
+}
+
 /* ds_dw against central differences of V dt = s - s0. */
 static void test_distance_derivative(void **state) {
     (void)state;
@@ -407,12 +465,15 @@ static void test_units(void **state) {
 static void test_double_range(void **state) {
     (void)state;
     for (int i = 0; i < 100000; i++) {
-        const tip_law law = random_law(308.0);
+        tip_law law = random_law(308.0);
+        if (i % 16 == 0)
+            law.mu_prime = 0.0;
         const double a = power_of_10(-320.0, 308.0), s = power_of_10(-320.0, 308.0);
         const double w = power_of_10(-320.0, 308.0);
         double out, V, M0, M1;
         ilsa_tip_regime regime;
-        if (!(law.E_prime > 0.0 && law.mu_prime > 0.0 && a > 0.0 && s > 0.0 && w > 0.0))
+        const int ruled = law.mu_prime > 0.0 || law.K_prime > 0.0;
+        if (!(law.E_prime > 0.0 && ruled && a > 0.0 && s > 0.0 && w > 0.0))
             continue;
         if (ilsa_tip_width(&law, a, s, &out) == ILSA_OK) {
             assert_true(out >= 0.0 && out <= DBL_MAX);
@@ -496,7 +557,7 @@ static void test_bad_laws(void **state) {
         const double bad = bad_positive[i / 4];
         double *member[4] = {&law.E_prime, &law.mu_prime, &law.K_prime, &law.C_prime};
         *member[i % 4] = bad;
-        const ilsa_status expected = i % 4 >= 2 && bad == 0.0 ? ILSA_OK : ILSA_ERR_VALUE;
+        const ilsa_status expected = i % 4 >= 1 && bad == 0.0 ? ILSA_OK : ILSA_ERR_VALUE;
         double a = UNTOUCHED, b = UNTOUCHED;
         ilsa_tip_regime r = {UNTOUCHED, UNTOUCHED, UNTOUCHED, UNTOUCHED, UNTOUCHED};
         assert_int_equal(ilsa_tip_width(&law, 1.0, 1.0, &a), expected);
@@ -509,6 +570,21 @@ static void test_bad_laws(void **state) {
         assert_true((a == UNTOUCHED && b == UNTOUCHED) == (expected != ILSA_OK));
         assert_int_equal(ilsa_tip_triangle(&law, 1.0, 1.0, 9.0, &r), expected);
         assert_true((r.N_k == UNTOUCHED && r.y == UNTOUCHED) == (expected != ILSA_OK));
+    }
+}
+
+/* Neither viscosity nor toughness: there is no width. */
+static void test_law_of_nothing(void **state) {
+    (void)state;
+    const tip_law laws[] = {{1.0, 0.0, 0.0, 0.0}, {1.0, 0.0, 0.0, 1.0}, {1.0, -0.0, -0.0, 1.0}};
+    for (size_t i = 0; i < sizeof laws / sizeof *laws; i++) {
+        double a = UNTOUCHED, b = UNTOUCHED;
+        ilsa_tip_regime r = {.N_k = UNTOUCHED, .x = UNTOUCHED};
+        assert_int_equal(ilsa_tip_width(&laws[i], 1.0, 1.0, &a), ILSA_ERR_VALUE);
+        assert_int_equal(ilsa_tip_moments(&laws[i], 1.0, 1.0, 1.0, &a, &b), ILSA_ERR_VALUE);
+        assert_int_equal(ilsa_tip_distance(&laws[i], 1.0, 1.0, 1.0, &a, &b), ILSA_ERR_VALUE);
+        assert_int_equal(ilsa_tip_triangle(&laws[i], 1.0, 1.0, 1.0, &r), ILSA_ERR_VALUE);
+        assert_true(a == UNTOUCHED && b == UNTOUCHED && r.N_k == UNTOUCHED && r.x == UNTOUCHED);
     }
 }
 
@@ -588,6 +664,9 @@ int main(void) {
         cmocka_unit_test(test_distance_finds_velocity),
         cmocka_unit_test(test_distance_arrested),
         cmocka_unit_test(test_distance_grows_with_width),
+        cmocka_unit_test(test_toughness_alone),
+        cmocka_unit_test(test_distance_of_toughness),
+        cmocka_unit_test(test_little_viscosity),
         cmocka_unit_test(test_distance_derivative),
         cmocka_unit_test(test_units),
         cmocka_unit_test(test_double_range),
@@ -595,6 +674,7 @@ int main(void) {
         cmocka_unit_test(test_triangle_formula),
         cmocka_unit_test(test_triangle_vertices),
         cmocka_unit_test(test_bad_laws),
+        cmocka_unit_test(test_law_of_nothing),
         cmocka_unit_test(test_bad_numbers),
         cmocka_unit_test(test_results_out_of_range),
         cmocka_unit_test(test_null),

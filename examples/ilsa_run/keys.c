@@ -52,7 +52,8 @@ const section_def sections[SECTION_COUNT] = {
       {"dt_initial", KEY_NUMBER, POSITIVE},
       {"dt_max", KEY_NUMBER, POSITIVE},
       {"level", KEY_WHOLE, 1, 5, 0, {NULL}},
-      {"coarsen", KEY_CHOICE, 0, 0, 0, {"no", "yes"}}}},
+      {"coarsen", KEY_CHOICE, 0, 0, 0, {"no", "yes"}},
+      {"tip", KEY_CHOICE, 0, 0, 0, {"full", "toughness-viscosity", "toughness"}}}},
 };
 /* clang-format on */
 

@@ -54,6 +54,7 @@ static ilsa_status make_solver(const scene *sc, const parts *p, ilsa_solver **so
     def.sources = p->sources;
     def.source_count = sc->source_count;
     def.level = sc->level;
+    def.tip = sc->tip;
     def.symmetry = sc->symmetry;
     def.coarsen = sc->coarsen;
     def.dt_max = sc->dt_max;

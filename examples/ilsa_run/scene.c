@@ -220,13 +220,22 @@ static void check_run(draft *d, const section *s) {
         draft_range_error(d, s, RUN_OUTPUT_TIMES, "rising, and at most t_end = %.10g", t_end);
 }
 
+/* A front that only toughness rules needs some. */
+static void check_tip(draft *d, const section *s, const scene *sc) {
+    if (!d->error_count && sc->tip == ILSA_TIP_TOUGHNESS && sc->material.K_prime == 0)
+        draft_range_error(d, s, RUN_TIP, "full or toughness-viscosity where the toughness is 0");
+}
+
 static void take_run(draft *d, scene *sc, section *s) {
+    static const ilsa_tip_model tips[] = {ILSA_TIP_FULL, ILSA_TIP_TOUGHNESS_VISCOSITY,
+                                          ILSA_TIP_TOUGHNESS};
     sc->t_end = s->values[RUN_T_END].number;
     sc->t_end_line = s->values[RUN_T_END].line;
     sc->dt_initial = number_or(s, RUN_DT_INITIAL, 0);
     sc->dt_max = number_or(s, RUN_DT_MAX, 0);
     sc->level = (int)number_or(s, RUN_LEVEL, 3);
     sc->coarsen = (int)number_or(s, RUN_COARSEN, 0);
+    sc->tip = tips[(int)number_or(s, RUN_TIP, 0)];
     sc->output_line = s->values[RUN_OUTPUT_TIMES].line;
     sc->output_times = take_numbers(s, RUN_OUTPUT_TIMES, &sc->output_count);
     if (sc->output_times)
@@ -263,6 +272,7 @@ static void build(draft *d, scene *sc) {
         take_sources(d, sc);
         take_run(d, sc, s[SECTION_RUN]);
     }
+    check_tip(d, s[SECTION_RUN], sc);
     check_initial(d, s[SECTION_INITIAL], sc);
     sc->radius = number_or(s[SECTION_INITIAL], INITIAL_RADIUS, 0);
     sc->time = number_or(s[SECTION_INITIAL], INITIAL_TIME, 0);

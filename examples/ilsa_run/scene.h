@@ -28,6 +28,7 @@ typedef struct scene {
     double *output_times;
     int output_count;
     int level, coarsen;
+    ilsa_tip_model tip;
     int symmetry_line, initial_line, t_end_line, output_line; /* for messages */
 } scene;
 

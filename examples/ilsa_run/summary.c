@@ -30,6 +30,10 @@ static void put_model(FILE *s, const scene *sc, const facts *f) {
                                        [ILSA_SYMMETRY_X] = "one half (x -> -x)",
                                        [ILSA_SYMMETRY_Y] = "one half (y -> -y)",
                                        [ILSA_SYMMETRY_XY] = "one quarter (both axes)"};
+    static const char *const tip[] = {[ILSA_TIP_FULL] = "full asymptote",
+                                      [ILSA_TIP_TOUGHNESS_VISCOSITY] =
+                                          "toughness and viscosity alone",
+                                      [ILSA_TIP_TOUGHNESS] = "toughness alone (LEFM)"};
     const ilsa_model *m = &f->model;
     fputs("modelled              elasticity, viscous flow", s);
     fprintf(s, "%s%s%s\n", m->toughness ? ", toughness" : "", m->leak_off ? ", leak-off" : "",
@@ -40,6 +44,7 @@ static void put_model(FILE *s, const scene *sc, const facts *f) {
     fprintf(s, "%s%s%s\n", m->toughness ? "" : "toughness (zero)  ",
             m->leak_off ? "" : "leak-off (zero)  ",
             m->stress_varies ? "" : "variation of stress (uniform)");
+    fprintf(s, "tip                   %s\n", tip[m->tip]);
     fprintf(s, "solved                %s of the fracture\n",
             m->symmetry >= ILSA_SYMMETRY_NONE && m->symmetry <= ILSA_SYMMETRY_XY
                 ? part[m->symmetry]

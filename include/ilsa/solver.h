@@ -26,6 +26,19 @@ typedef struct ilsa_source_def {
     double rate; /* volume per time, >= 0; may be changed by ilsa_set_rate */
 } ilsa_source_def;
 
+/*
+ * What the width behind the front follows (section 3): in the inversion of survey cells (4.9) and
+ * in the volume of tip cells (4.18). Flow and leak-off are the material's whatever the choice. So
+ * is the start from a penny, and so are the regimes: they are where the full asymptote is at a
+ * cell's distance and velocity. The full one is for use, the others are there to see
+ * what it is worth.
+ */
+typedef enum ilsa_tip_model {
+    ILSA_TIP_FULL = 0,                /* toughness, viscosity, leak-off: (3.15) */
+    ILSA_TIP_TOUGHNESS_VISCOSITY = 1, /* (3.15) with C' = 0 */
+    ILSA_TIP_TOUGHNESS = 2            /* LEFM, (2.6): K' s^(1/2) / E'; K' > 0, else refused */
+} ilsa_tip_model;
+
 /* Which mirror symmetry of the scene is used to solve a half or a quarter of it. */
 typedef enum ilsa_symmetry {
     ILSA_SYMMETRY_AUTO = 0, /* whatever the sources, the stress and the state allow */
@@ -56,6 +69,7 @@ typedef struct ilsa_solver_def {
     const ilsa_source_def *sources; /* source_count of them, required */
     int source_count;               /* 1 .. 1000; default 0 */
     int level;                      /* 1 fast .. 5 accurate; default 3 */
+    ilsa_tip_model tip;             /* default ILSA_TIP_FULL */
     ilsa_symmetry symmetry;         /* default ILSA_SYMMETRY_AUTO */
     ilsa_linear_solver linear;      /* default ILSA_LINEAR_AUTO */
     ilsa_product product;           /* default ILSA_PRODUCT_AUTO */
@@ -72,7 +86,8 @@ ILSA_API ilsa_solver_def ilsa_solver_def_default(void);
  * Makes a solver without a fracture. On success *solver is a new handle owned by the caller, to be
  * destroyed with ilsa_solver_destroy; otherwise *solver is NULL.
  * ILSA_ERR_NULL, ILSA_ERR_VALUE, ILSA_ERR_MEMORY, ILSA_ERR_MISMATCH (per-cell stress of another
- * mesh, symmetry asked for that the scene has not, a product that the library was built without).
+ * mesh, symmetry asked for that the scene has not, ILSA_TIP_TOUGHNESS for a material that has none,
+ * a product that the library was built without).
  */
 ILSA_API ilsa_status ilsa_solver_create(const ilsa_solver_def *def, ilsa_solver **solver);
 
@@ -228,6 +243,7 @@ ILSA_API ilsa_status ilsa_get_summary(const ilsa_solver *solver, ilsa_summary *s
 /* What the scene made the solver model, and what it left out. */
 typedef struct ilsa_model {
     int leak_off, toughness, stress_varies; /* 0 or 1 */
+    ilsa_tip_model tip;                     /* as in the definition */
     ilsa_symmetry symmetry;                 /* used now: NONE, X, Y or XY */
     ilsa_product product;                   /* FFT or BLAS */
     int level;

@@ -1,6 +1,10 @@
 /*
  * The closed-form three-process tip asymptote of a fluid-driven fracture, section 3 of the paper:
  * pure functions, no handle, safe from any thread.
+ *
+ * The parameters say which processes there are: K_prime = 0 none of toughness, C_prime = 0 none of
+ * leak-off. Unlike a material, scaled may have mu_prime = 0 if K_prime > 0: no viscosity, with
+ * which the leak-off drops out too, and w = K' s^(1/2) / E' at every velocity.
  */
 #ifndef ILSA_TIP_H
 #define ILSA_TIP_H
@@ -40,7 +44,8 @@ ILSA_API ilsa_status ilsa_tip_moments(const ilsa_material_def *scaled, double V,
 /*
  * The survey-cell inversion (4.9): the distance s >= s0 from a cell of width w > 0 to the front,
  * and the velocity V = (s - s0) / dt >= 0, when the distance was s0 > 0 a time dt > 0 ago. V = 0
- * and s = s0 where the stress intensity is below the toughness (K_hat > 1 at s0).
+ * and s = s0 where the stress intensity is below the toughness (K_hat > 1 at s0). With mu_prime = 0
+ * s is the larger of s0 and (E' w / K')^2.
  * ILSA_ERR_NULL, ILSA_ERR_VALUE.
  */
 ILSA_API ilsa_status ilsa_tip_distance(const ilsa_material_def *scaled, double w, double s0,
