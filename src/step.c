@@ -183,12 +183,47 @@ static void move_front(ilsa_solver *s, int pass) {
     }
 }
 
+typedef struct volumes {
+    double channel, tip, leaked;
+} volumes;
+
+static volumes sum_volumes(const ilsa_solver *s) {
+    volumes v = {0, 0, 0};
+    box part = ilsai_box_fold(&s->g, &s->trial_footprint);
+    int image[4];
+    for (int j = part.y0; j <= part.y1; j++) {
+        for (int i = part.x0; i <= part.x1; i++) {
+            int cell = ilsai_grid_cell(&s->g, i, j);
+            double area = ilsai_grid_images(&s->g, i, j, image) * s->g.dx * s->g.dy;
+            if (s->trial.kind[cell] != ILSA_CELL_EMPTY) {
+                double volume = s->trial.width[cell] * area;
+                *(s->trial.kind[cell] == ILSA_CELL_TIP ? &v.tip : &v.channel) += volume;
+                v.leaked += s->leak[cell] * area;
+            }
+        }
+    }
+    return v;
+}
+
+/*
+ * Whether so much leaks in the step that the predicted front cannot be held while the widths
+ * settle: misplaced by little, it takes more fluid than the fracture has.
+ */
+static int leaks_fast(const ilsa_solver *s) {
+    return ilsai_has_leakoff(s) && sum_volumes(s).leaked > ILSAI_LEAK_FAST * s->now.fracture;
+}
+
 /* The front where it is now: cells, tip widths, leak-off; and how they answer to the widths. */
 static ilsa_status set_front(ilsa_solver *s, double dt, int pass) {
     double start = ilsai_clock();
     ilsa_status status = march(s, dt, pass >= ILSAI_HOLD_PASS);
+    int answers = pass > 0;
     s->response_count = 0;
-    if (status == ILSA_OK && pass > 0 && pass < ILSAI_RESPONSE_PASSES) {
+    if (status == ILSA_OK && pass == 0 && leaks_fast(s)) {
+        survey(s, dt); /* for the derivatives */
+        answers = 1;
+    }
+    if (status == ILSA_OK && answers && pass < ILSAI_RESPONSE_PASSES) {
         status = ilsai_rim_respond(s, dt);
     }
     s->profile.front += ilsai_clock() - start;
@@ -197,7 +232,7 @@ static ilsa_status set_front(ilsa_solver *s, double dt, int pass) {
 
 /*
  * Passes of the front loop until front and widths agree. In the first pass the predicted front is
- * held, then the front moves with the widths.
+ * held, as a rule, then the front moves with the widths.
  */
 static ilsa_status iterate(ilsa_solver *s, double dt, coupled_counts *counts, ilsa_report *report,
                            double *change) {
@@ -223,28 +258,6 @@ static ilsa_status iterate(ilsa_solver *s, double dt, coupled_counts *counts, il
         move_front(s, pass);
     }
     return ILSA_STEP_REJECTED;
-}
-
-typedef struct volumes {
-    double channel, tip, leaked;
-} volumes;
-
-static volumes sum_volumes(const ilsa_solver *s) {
-    volumes v = {0, 0, 0};
-    box part = ilsai_box_fold(&s->g, &s->trial_footprint);
-    int image[4];
-    for (int j = part.y0; j <= part.y1; j++) {
-        for (int i = part.x0; i <= part.x1; i++) {
-            int cell = ilsai_grid_cell(&s->g, i, j);
-            double area = ilsai_grid_images(&s->g, i, j, image) * s->g.dx * s->g.dy;
-            if (s->trial.kind[cell] != ILSA_CELL_EMPTY) {
-                double volume = s->trial.width[cell] * area;
-                *(s->trial.kind[cell] == ILSA_CELL_TIP ? &v.tip : &v.channel) += volume;
-                v.leaked += s->leak[cell] * area;
-            }
-        }
-    }
-    return v;
 }
 
 static double injected_in(const ilsa_solver *s, double dt) {

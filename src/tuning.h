@@ -23,6 +23,9 @@
 /* Front: from this pass on the cells at the front no longer answer within the Newton system, and
  * the distances are accelerated instead: a step that has not converged by then goes to and fro. */
 #define ILSAI_RESPONSE_PASSES 8
+/* Front: volume leaking in a step over that in the fracture from which on the front moves with the
+ * widths in the first pass too. */
+#define ILSAI_LEAK_FAST 3.0
 /* Front: from this pass on a change of so many cells will do, if the tolerance is tighter: a cell
  * that turns from tip to channel and back leaves no front that meets it. */
 #define ILSAI_SETTLE_PASS 16
