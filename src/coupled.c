@@ -17,11 +17,8 @@ struct coupled {
     double *shift; /* change of the source terms at the front in this solve */
     double *lift;  /* change of the pressures there for the front's move in this solve */
     int capacity;
-    int *factored; /* the cells, in order, that the stencil factors were made for */
-    unsigned char *factored_tip;
-    int factored_count, factored_capacity;
-    int fresh_iterations, last_iterations; /* of GMRES: with the factors new, and lately */
     int response_capacity;
+    double residual; /* of the last linear solve, relative */
 };
 
 coupled *ilsai_coupled_create(const ilsa_mesh_def *mesh) {
@@ -50,8 +47,6 @@ void ilsai_coupled_destroy(coupled **c) {
         free((*c)->step);
         free((*c)->shift);
         free((*c)->lift);
-        free((*c)->factored);
-        free((*c)->factored_tip);
         free(*c);
         *c = NULL;
     }
@@ -82,17 +77,6 @@ static ilsa_status reserve(coupled *c, int count) {
             return ILSA_ERR_MEMORY;
         }
         c->capacity = (int)capacity;
-    }
-    if (count > c->factored_capacity) {
-        size_t capacity = (size_t)count + (size_t)count / 2 + 64;
-        int *cell = realloc(c->factored, capacity * sizeof *cell);
-        c->factored = cell ? cell : c->factored;
-        unsigned char *tip = realloc(c->factored_tip, capacity);
-        c->factored_tip = tip ? tip : c->factored_tip;
-        if (!cell || !tip) {
-            return ILSA_ERR_MEMORY;
-        }
-        c->factored_capacity = (int)capacity;
     }
     return ILSA_OK;
 }
@@ -138,30 +122,8 @@ static void set_rhs(coupled *c, const coupled_problem *problem) {
     }
 }
 
-/* Whether the factors at hand are of these cells and still serve. */
-static int factors_serve(const coupled *c) {
-    size_t n = (size_t)c->cells.count;
-    return c->factored_count == c->cells.count &&
-           c->last_iterations <= c->fresh_iterations + ILSAI_STALE_ITERATIONS &&
-           memcmp(c->factored, c->cells.cell, n * sizeof *c->factored) == 0 &&
-           memcmp(c->factored_tip, c->cells.tip, n) == 0;
-}
-
-static ilsa_status factor(coupled *c) {
-    size_t n = (size_t)c->cells.count;
-    c->factored_count = 0;
-    ilsa_status status = ilsai_jacobian_factor_stencil(&c->matrix);
-    if (status == ILSA_OK) {
-        memcpy(c->factored, c->cells.cell, n * sizeof *c->factored);
-        memcpy(c->factored_tip, c->cells.tip, n);
-        c->factored_count = c->cells.count;
-    }
-    return status;
-}
-
 static ilsa_status solve_iterative(coupled *c, coupled_counts *counts) {
-    int anew = !factors_serve(c);
-    ilsa_status status = anew ? factor(c) : ILSA_OK;
+    ilsa_status status = ilsai_jacobian_set_preconditioner(&c->matrix);
     if (status != ILSA_OK) {
         return status;
     }
@@ -169,8 +131,7 @@ static ilsa_status solve_iterative(coupled *c, coupled_counts *counts) {
         c->krylov, (size_t)c->cells.count, ilsai_jacobian_multiply, ilsai_jacobian_precondition,
         &c->matrix, c->rhs, c->step, ILSAI_GMRES_TOLERANCE, ILSAI_GMRES_ITERATIONS);
     counts->krylov += result.iterations;
-    c->last_iterations = result.iterations;
-    c->fresh_iterations = anew ? result.iterations : c->fresh_iterations;
+    c->residual = result.residual;
     return result.converged ? ILSA_OK : ILSA_STEP_REJECTED;
 }
 
@@ -215,15 +176,15 @@ static int choose_dense(const coupled *c, const coupled_problem *problem) {
 }
 
 /* Error left in the widths after a full Newton step of relative size change. */
-static double error_left(double change, int dense) {
-    return change * (ILSAI_NEWTON_CURVATURE * change + (dense ? 0 : ILSAI_GMRES_TOLERANCE));
+static double error_left(const coupled *c, double change) {
+    return change * (ILSAI_NEWTON_CURVATURE * change + ILSAI_NEWTON_RESIDUAL * c->residual);
 }
 
 static ilsa_status newton(coupled *c, const coupled_problem *problem, coupled_counts *counts) {
     int dense = choose_dense(c, problem);
     ilsa_status status = dense ? ilsai_jacobian_set_influence(&c->matrix) : ILSA_OK;
-    c->factored_count = dense ? 0 : c->factored_count;
     double length = 1;
+    c->residual = 0;
     for (int iteration = 0; iteration < ILSAI_NEWTON_MAX && status == ILSA_OK; iteration++) {
         ilsai_coupled_pressure(c, problem, counts);
         set_rhs(c, problem);
@@ -239,7 +200,7 @@ static ilsa_status newton(coupled *c, const coupled_problem *problem, coupled_co
         if (isnan(change)) {
             return ILSA_STEP_REJECTED;
         }
-        if (length == 1 && error_left(change, dense) <= problem->tolerance) {
+        if (length == 1 && error_left(c, change) <= problem->tolerance) {
             return ILSA_OK;
         }
     }
@@ -292,7 +253,6 @@ ilsa_status ilsai_coupled_solve(coupled *c, const coupled_problem *problem,
     if (find_responses(c, problem) != ILSA_OK) {
         return ILSA_ERR_MEMORY;
     }
-    c->factored_count = problem->fresh ? 0 : c->factored_count;
     c->matrix.products = 0;
     c->matrix.seconds_product = c->matrix.seconds_preconditioner = 0;
     status = newton(c, problem, counts);

@@ -32,7 +32,6 @@ typedef struct coupled_problem {
     double dt, mu_prime;
     ilsa_linear_solver linear;
     double tolerance; /* of the error in width, relative to the largest */
-    int fresh;        /* 1: the first solve of a step: nothing of the last one is used */
 } coupled_problem;
 
 typedef struct coupled_counts {

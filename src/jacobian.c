@@ -11,12 +11,15 @@
 void ilsai_jacobian_destroy(jacobian *m) {
     free(m->width);
     free(m->pressure);
-    free(m->band);
     free(m->full);
     free(m->influence);
     free(m->pivots);
     free(m->response_of);
     free(m->edge);
+    free(m->place);
+    free(m->weight);
+    ilsai_multigrid_destroy(&m->pressures);
+    ilsai_nearfield_destroy(&m->widths);
     memset(m, 0, sizeof *m);
 }
 
@@ -105,9 +108,6 @@ void ilsai_jacobian_multiply(void *context, const double *x, double *y) {
     clear_width(m);
 }
 
-/* Receives the entry of a row in a column. */
-typedef void entry_sink(jacobian *m, int row, int column, double value);
-
 /* What the self term of active cell k lacks, its own part in the front's move included. */
 static double edge_self(const jacobian *m, int k) {
     const tip_response *r = response_of(m, k);
@@ -116,65 +116,6 @@ static double edge_self(const jacobian *m, int k) {
         sum += r->from[p] == m->a->cell[k] ? r->pressure[p] : 0;
     }
     return sum;
-}
-
-/*
- * What the pressure of active cell b, weighing value in a row, is in terms of the unknowns. The tip
- * widths' responses are left out of the stencil matrix: they would double its band and save
- * nothing.
- */
-static void spread_pressure(jacobian *m, int row, int b, double value, entry_sink *sink) {
-    const active *a = m->a;
-    if (a->tip[b]) {
-        sink(m, row, b, value);
-        return;
-    }
-    sink(m, row, b, value * edge_self(m, b));
-    int ib = a->cell[b] % m->g->nx, jb = a->cell[b] / m->g->nx;
-    for (int dj = -1; dj <= 1; dj++) {
-        for (int di = -1; di <= 1; di++) {
-            int i = ib + di, j = jb + dj;
-            if (i < 0 || i >= m->g->nx || j < 0 || j >= m->g->ny) {
-                continue;
-            }
-            int column = a->slot[ilsai_grid_fold(m->g, i, j)];
-            if (column >= 0 && !a->tip[column]) {
-                sink(m, row, column, value * ilsai_elasticity_entry(m->e, di, dj));
-            }
-        }
-    }
-}
-
-static void visit_row(jacobian *m, int row, entry_sink *sink) {
-    const active *a = m->a;
-    double diagonal = 1, own_pressure = 0;
-    for (int face = 0; face < GRID_FACES; face++) {
-        int at = GRID_FACES * row + face, other = a->neighbour[at];
-        if (other < 0) {
-            continue;
-        }
-        own_pressure += m->f->conductance[at];
-        spread_pressure(m, row, other, -m->f->conductance[at], sink);
-        if (!a->tip[other]) {
-            sink(m, row, other, -m->f->slope[at]);
-        }
-        diagonal -= m->f->slope[at];
-    }
-    spread_pressure(m, row, row, own_pressure, sink);
-    if (!a->tip[row]) {
-        sink(m, row, row, diagonal);
-    }
-}
-
-static void measure_band(jacobian *m, int row, int column, double value) {
-    (void)value;
-    int distance = row > column ? row - column : column - row;
-    m->lower = distance > m->lower ? distance : m->lower;
-}
-
-static void add_to_band(jacobian *m, int row, int column, double value) {
-    size_t rows = 3 * (size_t)m->lower + 1;
-    m->band[(size_t)column * rows + (size_t)(2 * m->lower + row - column)] += value;
 }
 
 static ilsa_status reserve(double **array, size_t *capacity, size_t size) {
@@ -206,35 +147,113 @@ static ilsa_status reserve_pivots(jacobian *m) {
     return ILSA_OK;
 }
 
-ilsa_status ilsai_jacobian_factor_stencil(jacobian *m) {
-    double start = ilsai_clock();
-    int n = m->a->count;
-    m->lower = 0;
-    for (int row = 0; row < n; row++) {
-        visit_row(m, row, measure_band);
-    }
-    size_t size = (3 * (size_t)m->lower + 1) * (size_t)n;
-    if (reserve(&m->band, &m->band_capacity, size) != ILSA_OK || reserve_pivots(m) != ILSA_OK) {
-        return ILSA_ERR_MEMORY;
-    }
-    memset(m->band, 0, size * sizeof *m->band);
-    for (int row = 0; row < n; row++) {
-        visit_row(m, row, add_to_band);
-    }
-    lapack_int info = LAPACKE_dgbtrf_work(LAPACK_COL_MAJOR, n, n, m->lower, m->lower, m->band,
-                                          3 * m->lower + 1, m->pivots);
-    m->seconds_preconditioner += ilsai_clock() - start;
-    return info == 0 ? ILSA_OK : ILSA_ERR_NUMERIC;
+/* ---- Preconditioner ----------------------------------------------------------------------- */
+
+/*
+ * The spring of a cell, over 1 / C(0, 0): what C^-1 is on average over the waves that a step's flow
+ * does not level out.
+ */
+#define JACOBIAN_SPRING 3.0
+
+/* The part of a cell on the axis of a folded scene, of its faces across, that is in the fold. */
+static double half_on_axis(int mirror, int count, int at, int first) {
+    return mirror && count % 2 && at == first ? 0.5 : 1;
 }
 
+/* Places and weights of the active cells on the rectangle of the preconditioner. */
+static ilsa_status place_cells(jacobian *m, const box *part) {
+    const grid *g = m->g;
+    size_t count = (size_t)m->a->count;
+    if (count > m->place_capacity) {
+        size_t grown = count + count / 2;
+        size_t *place = realloc(m->place, grown * sizeof *place);
+        m->place = place ? place : m->place;
+        double *weight = realloc(m->weight, grown * sizeof *weight);
+        m->weight = weight ? weight : m->weight;
+        if (!place || !weight) {
+            return ILSA_ERR_MEMORY;
+        }
+        m->place_capacity = grown;
+    }
+    size_t stride = ilsai_box_columns(part) + 2;
+    for (size_t k = 0; k < count; k++) {
+        int i = m->a->cell[k] % g->nx, j = m->a->cell[k] / g->nx;
+        m->place[k] = (size_t)(j - part->y0 + 1) * stride + (size_t)(i - part->x0 + 1);
+        m->weight[k] = half_on_axis(g->mirror_x, g->nx, i, g->lo_x) *
+                       half_on_axis(g->mirror_y, g->ny, j, g->lo_y);
+    }
+    return ILSA_OK;
+}
+
+static void set_flow(jacobian *m) {
+    multigrid_level *l = &m->pressures.level[0];
+    double spring = JACOBIAN_SPRING / ilsai_elasticity_entry(m->e, 0, 0);
+    for (int k = 0; k < m->a->count; k++) {
+        const grid *g = m->g;
+        const double *conductance = m->f->conductance + (size_t)GRID_FACES * (size_t)k;
+        int i = m->a->cell[k] % g->nx, j = m->a->cell[k] / g->nx;
+        size_t at = m->place[k];
+        l->right[at] = half_on_axis(g->mirror_y, g->ny, j, g->lo_y) * conductance[GRID_RIGHT];
+        l->up[at] = half_on_axis(g->mirror_x, g->nx, i, g->lo_x) * conductance[GRID_UP];
+        l->spring[at] = m->a->tip[k] ? 0 : m->weight[k] * spring;
+    }
+    ilsai_multigrid_build(&m->pressures);
+}
+
+static void set_near_field(jacobian *m) {
+    nearfield *n = &m->widths;
+    n->mirror_x = m->g->mirror_x ? m->g->nx % 2 : -1;
+    n->mirror_y = m->g->mirror_y ? m->g->ny % 2 : -1;
+    n->self = ilsai_elasticity_entry(m->e, 0, 0);
+    n->beside = ilsai_elasticity_entry(m->e, 1, 0);
+    n->above = ilsai_elasticity_entry(m->e, 0, 1);
+    n->corner = ilsai_elasticity_entry(m->e, 1, 1);
+    for (int k = 0; k < m->a->count; k++) {
+        n->open[m->place[k]] = !m->a->tip[k];
+        n->extra[m->place[k]] = m->a->tip[k] ? 0 : edge_self(m, k);
+    }
+}
+
+ilsa_status ilsai_jacobian_set_preconditioner(jacobian *m) {
+    double start = ilsai_clock();
+    box part = ilsai_box_fold(m->g, &m->a->footprint);
+    int nx = (int)ilsai_box_columns(&part), ny = (int)ilsai_box_rows(&part);
+    if (place_cells(m, &part) != ILSA_OK ||
+        ilsai_multigrid_shape(&m->pressures, nx, ny) != ILSA_OK ||
+        ilsai_nearfield_shape(&m->widths, nx, ny) != ILSA_OK) {
+        return ILSA_ERR_MEMORY;
+    }
+    set_flow(m);
+    set_near_field(m);
+    m->seconds_preconditioner += ilsai_clock() - start;
+    return ILSA_OK;
+}
+
+/*
+ * The matrix is nearly (d - dt A) C: on pressures C^-1 is a spring d wherever flow does not level
+ * them out. So first pressures by multigrid, then widths by the near field of C; a tip cell's
+ * unknown is its pressure.
+ */
 void ilsai_jacobian_precondition(void *context, const double *x, double *y) {
     jacobian *m = context;
     double start = ilsai_clock();
-    memcpy(y, x, (size_t)m->a->count * sizeof *y);
-    LAPACKE_dgbtrs_work(LAPACK_COL_MAJOR, 'N', m->a->count, m->lower, m->lower, 1, m->band,
-                        3 * m->lower + 1, m->pivots, y, m->a->count);
+    multigrid_level *l = &m->pressures.level[0];
+    int count = m->a->count;
+    for (int k = 0; k < count; k++) {
+        l->b[m->place[k]] = m->weight[k] * x[k];
+    }
+    ilsai_multigrid_cycle(&m->pressures);
+    for (int k = 0; k < count; k++) {
+        m->widths.y[m->place[k]] = m->a->tip[k] ? 0 : l->y[m->place[k]];
+    }
+    ilsai_nearfield_solve(&m->widths);
+    for (int k = 0; k < count; k++) {
+        y[k] = m->a->tip[k] ? l->y[m->place[k]] : m->widths.x[m->place[k]];
+    }
     m->seconds_preconditioner += ilsai_clock() - start;
 }
+
+/* ---- Full matrix -------------------------------------------------------------------------- */
 
 /* C between cells a and b, b's images included. */
 static double folded_entry(const jacobian *m, int a, int b) {

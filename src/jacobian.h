@@ -1,6 +1,6 @@
 /*
  * The Newton matrix D - dt A [C_cc, I] of the coupled system: its product through the elasticity
- * product, its preconditioner with C cut to its 3 x 3 stencil, and its full form.
+ * product, its preconditioner, and its full form.
  *
  * Columns: the width of a channel cell, the pressure of a tip cell. Rows: the volume balance.
  */
@@ -10,6 +10,8 @@
 #include "active.h"
 #include "elasticity.h"
 #include "flow.h"
+#include "multigrid.h"
+#include "nearfield.h"
 
 /*
  * How the width and the source term of a cell at the front, or the pressure that its own width
@@ -29,20 +31,22 @@ typedef struct jacobian {
     const flow *f;
     elasticity *e;
     double *width, *pressure; /* work over the mesh; width is zero outside the channel cells */
-    double *band;             /* LAPACK band storage, factored */
     double *full;             /* LAPACK storage of the transpose, factored */
     double *edge;             /* per active cell: what its self term of C lacks at the front */
     const tip_response *response;
     int *response_of;  /* per active cell: its response, or -1 */
     double *influence; /* folded C between active cells, one row a cell */
     int *pivots;
-    size_t band_capacity, full_capacity, pivot_capacity;
-    int lower; /* sub- and superdiagonals of the band */
+    size_t full_capacity, pivot_capacity, place_capacity;
+    multigrid pressures; /* the preconditioner, on the rectangle of the representative cells */
+    nearfield widths;
+    size_t *place;  /* of each active cell in it */
+    double *weight; /* the part of each that lies in the fold */
     long products;
     double seconds_product, seconds_preconditioner;
 } jacobian;
 
-/* y = M x, and y = P^-1 x with the factored stencil matrix: gmres_operator on a jacobian. */
+/* y = M x, and y = P^-1 x with the preconditioner as it is set: gmres_operator on a jacobian. */
 void ilsai_jacobian_multiply(void *context, const double *x, double *y);
 void ilsai_jacobian_precondition(void *context, const double *x, double *y);
 
@@ -52,8 +56,8 @@ double ilsai_jacobian_tip_gain(const jacobian *m, int k, const double *x);
 /* Change of the pressure in active channel cell k as the front moves and its width stays. */
 double ilsai_jacobian_edge_pressure(const jacobian *m, int k, const double *x);
 
-/* Assembles and factors the stencil matrix. ILSA_ERR_MEMORY; ILSA_ERR_NUMERIC if singular. */
-ilsa_status ilsai_jacobian_factor_stencil(jacobian *m);
+/* Makes the preconditioner for the flow as it is set. ILSA_ERR_MEMORY. */
+ilsa_status ilsai_jacobian_set_preconditioner(jacobian *m);
 
 /* The influence matrix of the active cells, for ilsai_jacobian_solve_full. ILSA_ERR_MEMORY. */
 ilsa_status ilsai_jacobian_set_influence(jacobian *m);

@@ -36,6 +36,28 @@ static ilsa_status check_sources(ilsa_solver *s) {
     return ILSA_OK;
 }
 
+/*
+ * A step so short that rounding moved its front leaves pressures in the tip cells that are of no
+ * use as a first guess: those beyond any measure are forgotten.
+ */
+static void forget_wild_pressures(ilsa_solver *s, const box *part) {
+    double largest = 0;
+    for (int pass = 0; pass < 2; pass++) {
+        for (int j = part->y0; j <= part->y1; j++) {
+            for (int i = part->x0; i <= part->x1; i++) {
+                int cell = ilsai_grid_cell(&s->g, i, j);
+                double net = fabs(s->field.pressure[cell] - s->sigma[cell]);
+                if (pass == 0 && s->field.kind[cell] >= ILSA_CELL_SURVEY) {
+                    largest = fmax(largest, net);
+                } else if (pass == 1 && s->field.kind[cell] == ILSA_CELL_TIP &&
+                           net > ILSAI_PRESSURE_WILD * largest) {
+                    s->trial.pressure[cell] = 0;
+                }
+            }
+        }
+    }
+}
+
 ilsa_status ilsai_rim_begin(ilsa_solver *s, double dt) {
     box part = ilsai_box_fold(&s->g, &s->region);
     for (int j = part.y0; j <= part.y1; j++) {
@@ -47,6 +69,7 @@ ilsa_status ilsai_rim_begin(ilsa_solver *s, double dt) {
             s->edge[cell] = 0;
         }
     }
+    forget_wild_pressures(s, &part);
     ilsa_status status = check_sources(s);
     if (status == ILSA_OK) {
         add_sources(s, dt);
@@ -205,9 +228,9 @@ static void set_edges(ilsa_solver *s, const front_cell *cells, int count) {
     }
 }
 
-/* A tip cell wetted in this step starts from the pressure of a wet neighbour. */
+/* A tip cell without a pressure, as one wetted in this step, starts from a wet neighbour's. */
 static void guess_pressure(ilsa_solver *s, const front_cell *c) {
-    if (s->field.kind[c->cell] != ILSA_CELL_EMPTY || s->trial.pressure[c->cell] != 0) {
+    if (s->trial.pressure[c->cell] != 0) {
         return;
     }
     for (int face = 0; face < GRID_FACES; face++) {

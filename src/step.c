@@ -134,7 +134,7 @@ static double tolerance_now(const ilsa_solver *s, int pass) {
     return fmax(usual * fmin(1, advance(s) / s->step_cells), ILSAI_TOLERANCE_LEAST);
 }
 
-static coupled_problem pose(ilsa_solver *s, double dt, int pass, double change) {
+static coupled_problem pose(ilsa_solver *s, double dt, double change) {
     coupled_problem problem = {.g = &s->g,
                                .e = s->elastic,
                                .footprint = s->trial_footprint,
@@ -149,8 +149,7 @@ static coupled_problem pose(ilsa_solver *s, double dt, int pass, double change) 
                                .mu_prime = s->material.mu_prime,
                                .linear = s->def.linear,
                                .response = s->responses,
-                               .response_count = s->response_count,
-                               .fresh = pass == 0};
+                               .response_count = s->response_count};
     double aim = fmax(0.3 * change, tolerance_now(s, 0));
     problem.tolerance = ILSAI_WIDTH_TOLERANCE * fmin(aim, 0.1);
     return problem;
@@ -240,7 +239,7 @@ static ilsa_status iterate(ilsa_solver *s, double dt, coupled_counts *counts, il
     for (int pass = 0; pass < ILSAI_FRONT_PASSES_MAX; pass++) {
         report->front_iterations++;
         ilsa_status status = set_front(s, dt, pass);
-        coupled_problem problem = pose(s, dt, pass, *change);
+        coupled_problem problem = pose(s, dt, *change);
         status = status ? status : ilsai_coupled_solve(s->flow, &problem, counts);
         if (status != ILSA_OK) {
             return status;

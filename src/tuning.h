@@ -2,8 +2,8 @@
 #ifndef ILSAI_TUNING_H
 #define ILSAI_TUNING_H
 
-/* GMRES: vectors kept. The stencil preconditioner needs under 40 iterations at 15 000 cells. */
-#define ILSAI_GMRES_RESTART 60
+/* GMRES: vectors kept. A solve takes 3 to 10 iterations as a rule. */
+#define ILSAI_GMRES_RESTART 30
 /* GMRES: iterations after which a step is given up. */
 #define ILSAI_GMRES_ITERATIONS 240
 /* GMRES: relative residual of one Newton system. The front and the cube of the width change by more
@@ -11,8 +11,8 @@
 #define ILSAI_GMRES_TOLERANCE 3e-2
 /* Newton: error left in the widths after a relative change d is about NEWTON_CURVATURE d^2. */
 #define ILSAI_NEWTON_CURVATURE 2.0
-/* Stencil factors are made anew when GMRES takes this many iterations more than with fresh ones. */
-#define ILSAI_STALE_ITERATIONS 3
+/* and about NEWTON_RESIDUAL d times the relative residual that GMRES has left. */
+#define ILSAI_NEWTON_RESIDUAL 6.0
 /* Unknowns up to which the dense factorisation is the faster one. */
 #define ILSAI_DENSE_UNKNOWNS 100
 /* Part of a width that one Newton step may take away. */
@@ -49,6 +49,9 @@
 #define ILSAI_BALANCE_MAX 1e-2
 /* Front: how far beyond it distances are kept, in cell diagonals. */
 #define ILSAI_BAND 2.0
+
+/* Tip cells: net pressure over the largest in the channel above which it is no first guess. */
+#define ILSAI_PRESSURE_WILD 1e3
 
 /* Time: growth of the step after an accepted one, cut after a rejected one. */
 #define ILSAI_DT_GROWTH 1.5

@@ -2,6 +2,7 @@
  * out cell by cell on the unfolded mesh with the kernel summed directly. */
 #include "coupled.h"
 #include "failing_malloc.h"
+#include "gmres.h"
 #include "jacobian.h"
 #include "tuning.h"
 
@@ -429,28 +430,47 @@ static void product_is_linear(void **state) {
     free_scene(&s);
 }
 
-/* x from the derivative along x with C cut to its nearest neighbours. */
-static void stencil_factors_solve_their_matrix(void **state) {
+/* The preconditioner is one linear operator, and GMRES needs few iterations with it. */
+static void preconditioner_is_linear_and_serves(void **state) {
     (void)state;
     double worst = 0;
+    int most = 0;
     for (int n = 0; n < FOLDS; n++) {
         scene s = nth_scene(n, 1, 7);
         matrix at;
         make_matrix(&s, &at);
         int count = at.a.count;
-        double *x = random_vector(count, 4), *y = zeros((size_t)count), *z = zeros((size_t)count);
-        assert_int_equal(ilsai_jacobian_factor_stencil(&at.m), ILSA_OK);
-        derivative(&s, &at.a, x, 1, y);
-        ilsai_jacobian_precondition(&at.m, y, z);
-        worst = larger(worst, relative_difference(count, z, x));
+        size_t size = (size_t)count;
+        double *x = random_vector(count, 4), *y = random_vector(count, 5), *sum = zeros(size);
+        double *px = zeros(size), *py = zeros(size), *psum = zeros(size);
+        assert_int_equal(ilsai_jacobian_set_preconditioner(&at.m), ILSA_OK);
+        ilsai_jacobian_precondition(&at.m, x, px);
+        ilsai_jacobian_precondition(&at.m, y, py);
+        for (int k = 0; k < count; k++) {
+            sum[k] = 3 * x[k] - 0.5 * y[k];
+            px[k] = 3 * px[k] - 0.5 * py[k];
+        }
+        ilsai_jacobian_precondition(&at.m, sum, psum);
+        worst = larger(worst, relative_difference(count, psum, px));
+        gmres *krylov = ilsai_gmres_create(60);
+        assert_int_equal(ilsai_gmres_reserve(krylov, size), ILSA_OK);
+        gmres_result result = ilsai_gmres_solve(krylov, size, ilsai_jacobian_multiply,
+                                                ilsai_jacobian_precondition, &at.m, x, y, 1e-6, 60);
+        assert_true(result.converged);
+        most = result.iterations > most ? result.iterations : most;
+        ilsai_gmres_destroy(&krylov);
         free(x);
         free(y);
-        free(z);
+        free(sum);
+        free(px);
+        free(py);
+        free(psum);
         free_matrix(&at);
         free_scene(&s);
     }
-    print_message("stencil matrix: solved to %.2g\n", worst);
-    assert_true(worst < 1e-10);
+    print_message("preconditioner: linear to %.2g, at most %d iterations to 1e-6\n", worst, most);
+    assert_true(worst < 1e-12);
+    assert_true(most < 40);
 }
 
 /* The solution */
@@ -470,8 +490,7 @@ static coupled_problem pose(scene *s, ilsa_linear_solver linear, double toleranc
                              .dt = s->dt,
                              .mu_prime = s->mu_prime,
                              .linear = linear,
-                             .tolerance = tolerance,
-                             .fresh = 1};
+                             .tolerance = tolerance};
 }
 
 /* Solves and brings the pressures up to date; images of the pressure are filled in here. */
@@ -781,86 +800,8 @@ static void counts_are_added_to(void **state) {
     free_scene(&s);
 }
 
-/* Factors of earlier solves */
-
-/* The same problem again, and with other widths, on what the handle kept. */
-static void kept_factors_change_nothing_but_the_work(void **state) {
-    (void)state;
-    scene s = make_scene(24, 20, 0, 0, 100), truth = make_scene(24, 20, 0, 0, 100);
-    coupled_counts counts = {0, 0, 0, 0, 0};
-    coupled_problem problem = pose(&s, ILSA_LINEAR_GMRES, 1e-11);
-    assert_int_equal(ilsai_coupled_solve(s.c, &problem, &counts), ILSA_OK);
-    problem.fresh = 0;
-    for (size_t cell = 0; cell < s.cells; cell++) {
-        s.gain[cell] *= 1.3;
-        truth.gain[cell] *= 1.3;
-    }
-    assert_int_equal(ilsai_coupled_solve(s.c, &problem, &counts), ILSA_OK);
-    solve(&truth, ILSA_LINEAR_DENSE, 1e-11);
-    assert_true(width_difference(&s, &truth) < 1e-9);
-    free_scene(&s);
-    free_scene(&truth);
-}
-
-static void move_cell(scene *s, int from, int to) {
-    s->kind[to] = s->kind[from];
-    s->width[to] = s->width[from];
-    s->kind[from] = ILSA_CELL_EMPTY;
-    s->width[from] = 0;
-}
-
-static int first_of(const scene *s, unsigned char kind, int after) {
-    int cell = after;
-    while (s->kind[cell] != kind) {
-        cell++;
-    }
-    return cell;
-}
-
-/* The lowest row of tip cells moves to the right by one: as many cells, in the order of numbers
- * tip and channel as before, and yet others. */
-static void shift_lowest_row(scene *s) {
-    int from = first_of(s, ILSA_CELL_TIP, 0);
-    move_cell(s, from, first_of(s, ILSA_CELL_EMPTY, from));
-}
-
-/* A survey and a tip cell change places: the cells are the same. */
-static void exchange_kinds(scene *s) {
-    int tip = first_of(s, ILSA_CELL_TIP, 0), survey = first_of(s, ILSA_CELL_SURVEY, 0);
-    s->kind[tip] = ILSA_CELL_SURVEY;
-    s->kind[survey] = ILSA_CELL_TIP;
-}
-
-/* Factors of cells that are no longer those do not serve: the work is that of a handle that has
- * none. */
-static void kept_factors_are_those_of_the_cells(void **state) {
-    (void)state;
-    for (int n = 0; n < 2; n++) {
-        scene s = make_scene(20, 24, 0, 0, 101), next = make_scene(20, 24, 0, 0, 101);
-        scene alone = make_scene(20, 24, 0, 0, 101);
-        s.footprint = next.footprint = alone.footprint = (box){0, 19, 0, 23};
-        (n ? exchange_kinds : shift_lowest_row)(&next);
-        (n ? exchange_kinds : shift_lowest_row)(&alone);
-        coupled_counts counts = {0, 0, 0, 0, 0}, kept = counts, fresh = counts;
-        coupled_problem first = pose(&s, ILSA_LINEAR_GMRES, 1e-6);
-        coupled_problem second = pose(&next, ILSA_LINEAR_GMRES, 1e-6);
-        coupled_problem plain = pose(&alone, ILSA_LINEAR_GMRES, 1e-6);
-        second.fresh = 0;
-        assert_int_equal(ilsai_coupled_solve(s.c, &first, &counts), ILSA_OK);
-        int unknowns = ilsai_coupled_unknowns(s.c);
-        assert_int_equal(ilsai_coupled_solve(s.c, &second, &kept), ILSA_OK);
-        assert_int_equal(ilsai_coupled_solve(alone.c, &plain, &fresh), ILSA_OK);
-        assert_int_equal(ilsai_coupled_unknowns(s.c), unknowns);
-        assert_int_equal(kept.krylov, fresh.krylov);
-        assert_memory_equal(next.width, alone.width, s.cells * sizeof *s.width);
-        free_scene(&s);
-        free_scene(&next);
-        free_scene(&alone);
-    }
-}
-
-/* A fresh solve is that of a new handle to the last bit, whatever was solved before. */
-static void fresh_solve_uses_nothing_of_the_last(void **state) {
+/* A solve is that of a new handle to the last bit, whatever was solved before. */
+static void solves_use_nothing_of_the_last(void **state) {
     (void)state;
     scene s = make_scene(24, 20, 0, 0, 103), other = make_scene(24, 20, 0, 0, 103);
     scene alone = make_scene(24, 20, 0, 0, 103);
@@ -877,78 +818,6 @@ static void fresh_solve_uses_nothing_of_the_last(void **state) {
     free_scene(&s);
     free_scene(&other);
     free_scene(&alone);
-}
-
-/* Factors of a matrix that has become another one are made anew after one bad solve. */
-static void factors_that_no_longer_serve_are_replaced(void **state) {
-    (void)state;
-    scene s = make_scene(24, 20, 0, 0, 104), alone = make_scene(24, 20, 0, 0, 104);
-    scene other = make_scene(24, 20, 0, 0, 104);
-    coupled_counts counts = {0, 0, 0, 0, 0}, kept = counts, fresh = counts;
-    other.dt = 1e-3;
-    coupled_problem before = pose(&other, ILSA_LINEAR_GMRES, 1e-10);
-    coupled_problem problem = pose(&s, ILSA_LINEAR_GMRES, 1e-10);
-    coupled_problem plain = pose(&alone, ILSA_LINEAR_GMRES, 1e-10);
-    assert_int_equal(ilsai_coupled_solve(s.c, &before, &counts), ILSA_OK);
-    problem.fresh = 0;
-    assert_int_equal(ilsai_coupled_solve(s.c, &problem, &kept), ILSA_OK);
-    assert_int_equal(ilsai_coupled_solve(alone.c, &plain, &fresh), ILSA_OK);
-    print_message("factors of another step: %ld GMRES iterations in %ld Newton, fresh %ld in %ld\n",
-                  kept.krylov, kept.newton, fresh.krylov, fresh.newton);
-    assert_true(kept.newton >= 4 && kept.krylov < 3 * fresh.krylov);
-    free_scene(&s);
-    free_scene(&alone);
-    free_scene(&other);
-}
-
-/* Empties rim cells until the dense solver is the one that AUTO takes. */
-static void shrink(scene *s, int count) {
-    for (int cell = 0; count > ILSAI_DENSE_UNKNOWNS - 4; cell++) {
-        assert_true(cell < (int)s->cells);
-        if (s->kind[cell] == ILSA_CELL_TIP) {
-            s->kind[cell] = ILSA_CELL_EMPTY;
-            s->width[cell] = s->width_old[cell] = 0;
-            count--;
-        }
-    }
-}
-
-/* GMRES iterations of a second solve of the same cells, a dense one of fewer cells between or not.
- */
-static long iterations_again(int disturbed, uint64_t salt) {
-    scene s = make_scene(16, 12, 0, 0, salt), less = make_scene(16, 12, 0, 0, salt);
-    coupled_counts first = {0, 0, 0, 0, 0}, between = first, again = first;
-    coupled_problem problem = pose(&s, ILSA_LINEAR_AUTO, 1e-6);
-    problem.dt = 0.1;
-    assert_int_equal(ilsai_coupled_solve(s.c, &problem, &first), ILSA_OK);
-    assert_true(ilsai_coupled_unknowns(s.c) > ILSAI_DENSE_UNKNOWNS && first.krylov > 0);
-    problem.fresh = 0;
-    shrink(&less, ilsai_coupled_unknowns(s.c));
-    coupled_problem smaller = pose(&less, ILSA_LINEAR_AUTO, 1e-6);
-    smaller.fresh = 0;
-    if (disturbed) {
-        assert_int_equal(ilsai_coupled_solve(s.c, &smaller, &between), ILSA_OK);
-        assert_true(between.newton > 0 && between.krylov == 0);
-    }
-    memcpy(s.width, s.width_old, s.cells * sizeof *s.width);
-    assert_int_equal(ilsai_coupled_solve(s.c, &problem, &again), ILSA_OK);
-    free_scene(&s);
-    free_scene(&less);
-    return again.krylov;
-}
-
-/*
- * Cells fall below the bound of the dense solver in one pass of the front loop and come back in
- * the next: the factors kept for them must be whole, or made anew.
- */
-static void dense_solve_leaves_kept_factors_alone(void **state) {
-    (void)state;
-    for (uint64_t salt = 1; salt <= 4; salt++) {
-        long plain = iterations_again(0, salt), disturbed = iterations_again(1, salt);
-        print_message("a dense solve between: %ld instead of %ld GMRES iterations\n", disturbed,
-                      plain);
-        assert_true(disturbed <= plain + 1);
-    }
 }
 
 /* What cannot be solved */
@@ -1110,7 +979,7 @@ int main(void) {
         cmocka_unit_test(matrix_is_the_derivative),
         cmocka_unit_test(matrix_with_responses_is_the_derivative),
         cmocka_unit_test(product_is_linear),
-        cmocka_unit_test(stencil_factors_solve_their_matrix),
+        cmocka_unit_test(preconditioner_is_linear_and_serves),
         cmocka_unit_test(solution_satisfies_the_equations),
         cmocka_unit_test(only_channel_widths_change),
         cmocka_unit_test(responses_are_followed),
@@ -1122,11 +991,7 @@ int main(void) {
         cmocka_unit_test(tolerance_bounds_the_error),
         cmocka_unit_test(any_units),
         cmocka_unit_test(counts_are_added_to),
-        cmocka_unit_test(kept_factors_change_nothing_but_the_work),
-        cmocka_unit_test(kept_factors_are_those_of_the_cells),
-        cmocka_unit_test(fresh_solve_uses_nothing_of_the_last),
-        cmocka_unit_test(factors_that_no_longer_serve_are_replaced),
-        cmocka_unit_test(dense_solve_leaves_kept_factors_alone),
+        cmocka_unit_test(solves_use_nothing_of_the_last),
         cmocka_unit_test(what_cannot_be_solved_is_refused),
         cmocka_unit_test(draining_dry_is_closing),
         cmocka_unit_test(five_cells_by_hand),

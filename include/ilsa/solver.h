@@ -51,7 +51,7 @@ typedef enum ilsa_symmetry {
 /* How the Newton system of a step is solved. */
 typedef enum ilsa_linear_solver {
     ILSA_LINEAR_AUTO = 0,  /* by the number of unknowns */
-    ILSA_LINEAR_GMRES = 1, /* GMRES, preconditioned by the 3 x 3 stencil of the elasticity */
+    ILSA_LINEAR_GMRES = 1, /* GMRES, preconditioned by multigrid and the near field of elasticity */
     ILSA_LINEAR_DENSE = 2  /* LU of the full matrix */
 } ilsa_linear_solver;
 
