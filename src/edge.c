@@ -33,8 +33,14 @@ static double mean_power(double s, double a, double b, double lambda) {
     return sum / (4 * wide * narrow * (lambda + 1) * exponent);
 }
 
+/* Where the cell reaches less than this part of s the mean is its expansion to the second order. */
+#define EDGE_FAR 0.2
+
 double ilsai_edge_mean(double dx, double dy, const edge_front *front) {
-    double a = 0.5 * dx * front->cos_a, b = 0.5 * dy * front->sin_a;
+    double a = 0.5 * dx * front->cos_a, b = 0.5 * dy * front->sin_a, s = front->s;
+    if (a + b < EDGE_FAR * s) {
+        return 1 - front->exponent * (1 - front->exponent) * (a * a + b * b) / (6 * s * s);
+    }
     return mean_power(front->s, a, b, front->exponent) * pow(front->s, -front->exponent);
 }
 

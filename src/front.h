@@ -14,15 +14,15 @@ enum { FRONT_JUMPS = 4 };
 /* A survey cell: where the marching starts. */
 typedef struct front_seed {
     int cell;
-    double s0;           /* distance to the front at the start of the step */
-    double h;            /* cell size along the normal */
-    double cos_a, sin_a; /* normal of the front as the last step left it, in 0 .. pi/2 */
-    double s;            /* distance now */
-    double V;            /* (s - s0) / dt */
-    double exponent;     /* d ln w / d ln s of the asymptote at s */
-    double w;            /* width that s and V answer to */
-    double ds_dw;        /* derivative of s by the width of the cell */
-    double ds_inner;     /* and by that of the inner cell */
+    double s0;                  /* distance to the front at the start of the step */
+    double h;                   /* cell size along the normal */
+    double cos_a, sin_a;        /* normal of the front as the last step left it, in 0 .. pi/2 */
+    double s;                   /* distance now */
+    double V;                   /* (s - s0) / dt */
+    double asymptote, exponent; /* width of the asymptote at s, and d ln w / d ln s of it */
+    double w;                   /* width that s and V answer to */
+    double ds_dw;               /* derivative of s by the width of the cell */
+    double ds_inner;            /* and by that of the inner cell */
     int inner;    /* cell behind it that tells how the width departs from the asymptote, -1: none */
     double depth; /* how much deeper that lies */
     int jumps;    /* of the stress on the normal around the cell */

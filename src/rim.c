@@ -165,10 +165,9 @@ static void leak_at_front(ilsa_solver *s, const front_cell *c, double dt) {
 /* Mean over the cell of what the jumps of the stress behind its front add, from the seeds' sides.
  */
 static double jump_width(const ilsa_solver *s, const front_cell *c, const tipcell_front *at) {
-    double sum = 0;
+    double sum = 0, moved = at->ell - c->ell;
     for (int p = 0; p < c->from.count; p++) {
         const front_seed *seed = &s->seeds[c->from.seed[p]];
-        double moved = at->ell - c->ell;
         for (int k = 0; k < seed->jumps; k++) {
             double d = seed->s + seed->jump[k].depth + moved;
             sum += c->from.weight[p] * seed->jump[k].height * ilsai_tipcell_jump_volume(d, at);
@@ -177,18 +176,42 @@ static double jump_width(const ilsa_solver *s, const front_cell *c, const tipcel
     return sum / (s->g.dx * s->g.dy);
 }
 
-/*
- * Mean width (4.18) with the front at ell; in a cell that has just filled it is the first guess of
- * the coupled solve.
- */
-static double mean_width(const ilsa_solver *s, const front_cell *c, double ell, double V) {
-    tipcell_front at = {ell, c->cos_a, c->sin_a, s->g.dx, s->g.dy};
-    double K_I = s->material.E_prime * c->K_num / c->K_den;
-    double w = ilsai_tipcell_volume(&s->asymptote, V > 0 ? V : 0, K_I, &at) / (s->g.dx * s->g.dy);
-    return fmax(w + jump_width(s, c, &at), ILSAI_JUMP_LEFT * w);
+static int has_jumps(const ilsa_solver *s, const front_cell *c) {
+    int jumps = 0;
+    for (int p = 0; p < c->from.count; p++) {
+        jumps |= s->seeds[c->from.seed[p]].jumps;
+    }
+    return jumps;
 }
 
-static void set_cell(ilsa_solver *s, const front_cell *c, double dt, int hold) {
+/*
+ * Mean width (4.18), and its derivative by an advance of the front within the step, which is one of
+ * the velocity too. In a cell that has just filled it is the first guess of the coupled solve.
+ */
+typedef struct rim_width {
+    double value, by_advance;
+} rim_width;
+
+static rim_width mean_width(const ilsa_solver *s, const front_cell *c, double dt) {
+    tipcell_front at = {c->ell, c->cos_a, c->sin_a, s->g.dx, s->g.dy};
+    double K_I = s->material.E_prime * c->K_num / c->K_den, V = c->V > 0 ? c->V : 0;
+    double area = s->g.dx * s->g.dy;
+    tipcell_growth growth = ilsai_tipcell_growth(&s->asymptote, V, K_I, &at);
+    rim_width w = {growth.volume / area, growth.by_ell / area};
+    if (V > 0 && c->ell > 0) {
+        w.by_advance += w.value * ilsai_tip_velocity_exponent(&s->asymptote, V, c->ell) / (V * dt);
+    }
+    if (has_jumps(s, c)) {
+        double small = ILSAI_DIFFERENCE * ilsai_grid_h(&s->g), least = ILSAI_JUMP_LEFT * w.value;
+        double added = jump_width(s, c, &at);
+        at.ell += small;
+        w.by_advance += (jump_width(s, c, &at) - added) / small;
+        w.value = fmax(w.value + added, least);
+    }
+    return w;
+}
+
+static void set_cell(ilsa_solver *s, const front_cell *c, double dt, int hold, double *by_advance) {
     unsigned char was = s->trial.kind[c->cell], kind = classify(s, c, hold);
     s->trial.kind[c->cell] = kind;
     s->trial.speed[c->cell] = c->V;
@@ -198,7 +221,9 @@ static void set_cell(ilsa_solver *s, const front_cell *c, double dt, int hold) {
         return;
     }
     if (kind == ILSA_CELL_TIP || was != ILSA_CELL_CHANNEL) {
-        set_width(s, c->cell, mean_width(s, c, c->ell, c->V));
+        rim_width w = mean_width(s, c, dt);
+        set_width(s, c->cell, w.value);
+        *by_advance = w.by_advance;
     }
     if (ilsai_has_leakoff(s)) {
         leak_at_front(s, c, dt);
@@ -252,17 +277,35 @@ static int grow_footprint(ilsa_solver *s, int cell) {
     return b->x0 > 0 && b->y0 > 0 && b->x1 < s->g.nx - 1 && b->y1 < s->g.ny - 1;
 }
 
+/* Room for what the cells of a march and the survey cells answer. */
+static ilsa_status reserve(ilsa_solver *s, int count) {
+    if (count + s->seed_count <= s->response_capacity) {
+        return ILSA_OK;
+    }
+    size_t most = (size_t)count + (size_t)s->seed_count, capacity = most + most / 2 + 16;
+    tip_response *responses = realloc(s->responses, capacity * sizeof *responses);
+    s->responses = responses ? responses : s->responses;
+    double *by_advance = realloc(s->by_advance, capacity * sizeof *by_advance);
+    s->by_advance = by_advance ? by_advance : s->by_advance;
+    if (!responses || !by_advance) {
+        return ILSA_ERR_MEMORY;
+    }
+    s->response_capacity = (int)capacity;
+    return ILSA_OK;
+}
+
 ilsa_status ilsai_rim_set(ilsa_solver *s, double dt, int hold) {
     int count;
     const front_cell *cells = ilsai_front_cells(s->march, &count);
-    if (ilsai_has_leakoff(s) && ilsai_tip_records_reserve(&s->trial_tips, count) != ILSA_OK) {
+    if (reserve(s, count) != ILSA_OK ||
+        (ilsai_has_leakoff(s) && ilsai_tip_records_reserve(&s->trial_tips, count) != ILSA_OK)) {
         return ILSA_ERR_MEMORY;
     }
     ilsa_status status = drop_unreached(s);
     s->trial_tips.count = 0;
     s->trial_footprint = s->now.footprint;
     for (int k = 0; k < count && status == ILSA_OK; k++) {
-        set_cell(s, &cells[k], dt, hold);
+        set_cell(s, &cells[k], dt, hold, &s->by_advance[k]);
         if (s->trial.kind[cells[k].cell] != ILSA_CELL_EMPTY) {
             guess_pressure(s, &cells[k]);
             if (!grow_footprint(s, cells[k].cell)) {
@@ -282,7 +325,7 @@ typedef struct answer {
 } answer;
 
 /* Derivatives by an advance of the front within the step. */
-static answer differentiate(ilsa_solver *s, const front_cell *c, double dt) {
+static answer differentiate(ilsa_solver *s, const front_cell *c, double dt, double by_advance) {
     double small = ILSAI_DIFFERENCE * ilsai_grid_h(&s->g);
     front_cell moved = *c;
     moved.ell += small;
@@ -290,7 +333,7 @@ static answer differentiate(ilsa_solver *s, const front_cell *c, double dt) {
     moved.V += small / dt;
     answer a = {0, 0, 0};
     if (s->trial.kind[c->cell] == ILSA_CELL_TIP) {
-        a.width = (mean_width(s, c, moved.ell, moved.V) - s->trial.width[c->cell]) / small;
+        a.width = by_advance;
     } else {
         a.pressure = edge_of(s, c).slope * s->trial.width[c->cell];
     }
@@ -319,9 +362,9 @@ static void answer_to_seed(tip_response *r, const front_seed *seed, const answer
 }
 
 /* A front at rest answers with its stress intensity, (4.19); a moving one by moving. */
-static tip_response response_in(ilsa_solver *s, const front_cell *c, double dt) {
+static tip_response response_in(ilsa_solver *s, const front_cell *c, double dt, double by_advance) {
     tip_response r = {.cell = c->cell};
-    answer moving = differentiate(s, c, dt), resting = {s->trial.width[c->cell], 0, 0};
+    answer moving = differentiate(s, c, dt, by_advance), resting = {s->trial.width[c->cell], 0, 0};
     for (int p = 0; p < c->from.count; p++) {
         const front_seed *seed = &s->seeds[c->from.seed[p]];
         if (c->V > 0) {
@@ -341,26 +384,16 @@ static tip_response response_of_seed(const ilsa_solver *s, const front_seed *see
     return r;
 }
 
-ilsa_status ilsai_rim_respond(ilsa_solver *s, double dt) {
+void ilsai_rim_respond(ilsa_solver *s, double dt) {
     int count;
     const front_cell *cells = ilsai_front_cells(s->march, &count);
     s->response_count = 0;
-    if (count + s->seed_count > s->response_capacity) {
-        size_t most = (size_t)count + (size_t)s->seed_count, capacity = most + most / 2 + 16;
-        tip_response *fresh = realloc(s->responses, capacity * sizeof *fresh);
-        if (!fresh) {
-            return ILSA_ERR_MEMORY;
-        }
-        s->responses = fresh;
-        s->response_capacity = (int)capacity;
-    }
     for (int k = 0; k < s->seed_count; k++) {
         s->responses[s->response_count++] = response_of_seed(s, &s->seeds[k]);
     }
     for (int k = 0; k < count; k++) {
         if (s->trial.kind[cells[k].cell] != ILSA_CELL_EMPTY) {
-            s->responses[s->response_count++] = response_in(s, &cells[k], dt);
+            s->responses[s->response_count++] = response_in(s, &cells[k], dt, s->by_advance[k]);
         }
     }
-    return ILSA_OK;
 }

@@ -19,8 +19,8 @@ ilsa_status ilsai_rim_set(ilsa_solver *s, double dt, int hold);
 
 /*
  * How widths and leak-off of the cells at the front, as they are set, answer to the widths of the
- * survey cells: the derivatives of (4.18) and (4.25) through (4.9) and (4.12). ILSA_ERR_MEMORY.
+ * survey cells: the derivatives of (4.18) and (4.25) through (4.9) and (4.12).
  */
-ilsa_status ilsai_rim_respond(ilsa_solver *s, double dt);
+void ilsai_rim_respond(ilsa_solver *s, double dt);
 
 #endif

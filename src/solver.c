@@ -192,6 +192,7 @@ void ilsa_solver_destroy(ilsa_solver **solver) {
     free(s->edge);
     free(s->seeds);
     free(s->responses);
+    free(s->by_advance);
     free(s->distance);
     free(s->next_distance);
     free(s->sigma);

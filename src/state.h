@@ -86,6 +86,7 @@ struct ilsa_solver {
     double *distance, *next_distance;
     int seed_count, seed_capacity;
     tip_response *responses; /* of the cells at the front in this pass */
+    double *by_advance; /* of each cell that the march reached: what an advance adds to its width */
     int response_count, response_capacity;
     box trial_footprint;
 

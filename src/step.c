@@ -103,7 +103,7 @@ static void place_front(ilsa_solver *s, double dt) {
         seed->s = s->distance[k];
         seed->V = (seed->s - seed->s0) / dt;
         ilsai_survey_settle(s, seed);
-        seed->w = ilsai_survey_width(s, seed);
+        seed->w = seed->V > 0 ? seed->asymptote : ilsai_survey_width(s, seed);
     }
 }
 
@@ -223,7 +223,7 @@ static ilsa_status set_front(ilsa_solver *s, double dt, int pass) {
         answers = 1;
     }
     if (status == ILSA_OK && answers && pass < ILSAI_RESPONSE_PASSES) {
-        status = ilsai_rim_respond(s, dt);
+        ilsai_rim_respond(s, dt);
     }
     s->profile.front += ilsai_clock() - start;
     return status;

@@ -33,6 +33,11 @@ static double smooth_width(const ilsa_solver *s, const front_seed *seed, int cel
     return fmax(w - ilsai_survey_jump_width(seed, distance), ILSAI_JUMP_LEFT * w);
 }
 
+/* Width of the asymptote at a distance from the seed's front; up to a factor for one at rest. */
+static double asymptote_at(const ilsa_solver *s, const front_seed *seed, double distance) {
+    return seed->V > 0 ? ilsai_tip_width(&s->asymptote, seed->V, distance) : sqrt(distance);
+}
+
 /*
  * The first term of the width at the centre of a survey cell, and its derivatives by the widths of
  * two cells, which are means.
@@ -50,11 +55,8 @@ static first_term split_width(const ilsa_solver *s, const front_seed *seed) {
     if (seed->inner < 0) {
         return out;
     }
-    double deep = seed->s + seed->depth, here = sqrt(seed->s), there = sqrt(deep);
-    if (seed->V > 0) {
-        here = ilsai_tip_width(&s->asymptote, seed->V, seed->s);
-        there = ilsai_tip_width(&s->asymptote, seed->V, deep);
-    }
+    double deep = seed->s + seed->depth, here = seed->asymptote;
+    double there = asymptote_at(s, seed, deep);
     seen.s = deep;
     there *= ilsai_edge_mean(s->mesh.dx, s->mesh.dy, &seen);
     double inner = smooth_width(s, seed, seed->inner, deep), q = inner * here / (w * there);
@@ -72,8 +74,8 @@ static first_term split_width(const ilsa_solver *s, const front_seed *seed) {
 }
 
 void ilsai_survey_settle(const ilsa_solver *s, front_seed *seed) {
-    double w = seed->V > 0 ? ilsai_tip_width(&s->asymptote, seed->V, seed->s) : 1;
-    seed->exponent = ilsai_tip_exponent(&s->asymptote, seed->V, seed->s, w);
+    seed->asymptote = asymptote_at(s, seed, seed->s);
+    seed->exponent = ilsai_tip_exponent(&s->asymptote, seed->V, seed->s, seed->asymptote);
 }
 
 double ilsai_survey_width(const ilsa_solver *s, const front_seed *seed) {
@@ -82,7 +84,6 @@ double ilsai_survey_width(const ilsa_solver *s, const front_seed *seed) {
 
 /* One evaluation of (4.9), the second term taken at the distance and velocity that seed has. */
 static double distance_for(const ilsa_solver *s, front_seed *seed, double dt) {
-    ilsai_survey_settle(s, seed);
     first_term w = split_width(s, seed);
     tip_front at = ilsai_tip_distance(&s->asymptote, w.width, seed->s0, dt);
     seed->ds_dw = at.ds_dw * w.by_cell;
@@ -93,13 +94,15 @@ static double distance_for(const ilsa_solver *s, front_seed *seed, double dt) {
 double ilsai_survey_distance(const ilsa_solver *s, front_seed *seed, double dt) {
     front_seed at = *seed;
     double value = distance_for(s, &at, dt), slope = 0, limit = ILSAI_SURVEY_SLOPE;
+    double close = ILSAI_SURVEY_CLOSE * s->tolerance * at.h;
     for (int k = 0; k < ILSAI_SURVEY_SECANTS; k++) {
         double last = at.s, next = fmax(at.s0, last + (value - last) / (1 - slope));
-        if (!(fabs(next - last) > ILSAI_SURVEY_CLOSE * at.h)) {
+        if (!(fabs(next - last) > close)) {
             break;
         }
         at.s = next;
         at.V = (next - at.s0) / dt;
+        ilsai_survey_settle(s, &at);
         double fresh = distance_for(s, &at, dt);
         slope = fmax(-limit, fmin(limit, (fresh - value) / (next - last)));
         value = fresh;

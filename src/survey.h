@@ -14,7 +14,7 @@
  * channel. */
 double ilsai_survey_size(const ilsa_solver *s, const grid *g, int i, int j);
 
-/* Sets the exponent of a seed for its distance and V. */
+/* Sets what the asymptote is at a seed's distance and V: before any of the functions below. */
 void ilsai_survey_settle(const ilsa_solver *s, front_seed *seed);
 
 /* Width that the jumps of the stress add at a distance s from the seed's front. */

@@ -324,6 +324,16 @@ double ilsai_tip_exponent(const tip_law *law, double V, double s, double w) {
     return 0.5 * (1.0 + delta[0]);
 }
 
+/* From ln(g_delta w^3) = ln(mu' V s^2 / E'), C_hat falling with the root of V. */
+double ilsai_tip_velocity_exponent(const tip_law *law, double V, double s) {
+    double K, C;
+    scaled_variables(law, V, s, ilsai_tip_width(law, V, s), &K, &C);
+    if (!(K < 1.0))
+        return 0.0;
+    const tip_g f = g_delta(K, 1.0 - K, C);
+    return (1.0 + 0.5 * f.by_C) / (3.0 + f.by_kappa * K / (1.0 - K) - f.by_C);
+}
+
 /*
  * (4.9) in units of s0: K0 and C0 are K_hat at s0 and C_hat for V = s0 / dt, m0 likewise s_hat.
  * With xi = v / s0 the unknown is x, 1 / x = 1 / xi - 1 / xi_most, which runs from 0 to infinity

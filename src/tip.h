@@ -19,6 +19,9 @@ void ilsai_tip_moments(const tip_law *law, double V, double s, double w, double 
 /* d ln w / d ln s at distance s for V >= 0, w the width there: 1/2 .. 2/3, (1 + Delta) / 2. */
 double ilsai_tip_exponent(const tip_law *law, double V, double s, double w);
 
+/* d ln w / d ln V at distance s for V > 0. */
+double ilsai_tip_velocity_exponent(const tip_law *law, double V, double s);
+
 /* The survey-cell inversion (4.9). */
 typedef struct tip_front {
     double s;     /* distance to the front, >= s0 */

@@ -23,7 +23,14 @@ typedef struct tipcell_front {
  */
 double ilsai_tipcell_volume(const tip_law *law, double V, double K_I, const tipcell_front *front);
 
-/* The same of the width that a jump of height 1 adds at a distance d behind the front. */
+/* The same with its derivative by ell at constant velocity. */
+typedef struct tipcell_growth {
+    double volume, by_ell;
+} tipcell_growth;
+tipcell_growth ilsai_tipcell_growth(const tip_law *law, double V, double K_I,
+                                    const tipcell_front *front);
+
+/* The volume of the width that a jump of height 1 adds at a distance d behind the front. */
 double ilsai_tipcell_jump_volume(double d, const tipcell_front *front);
 
 /* Part of the cell that is wet, area, 0 .. dx dy. */

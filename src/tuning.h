@@ -71,10 +71,10 @@
 #define ILSAI_SHAPE_POINTS    4
 #define ILSAI_SHAPE_SPAN      0.4
 #define ILSAI_SHAPE_CURVATURE 0.5
-/* Survey: secant steps to the distance that agrees with the second term, the change in cells at
- * which they end, and the largest slope that they believe. */
+/* Survey: secant steps to the distance that agrees with the second term, the change at which they
+ * end, in tolerances of the front, and the largest slope that they believe. */
 #define ILSAI_SURVEY_SECANTS 3
-#define ILSAI_SURVEY_CLOSE   1e-9
+#define ILSAI_SURVEY_CLOSE   1e-3
 #define ILSAI_SURVEY_SLOPE   0.7
 /* Survey: how far behind the cell steps of the stress are looked for, in cells. */
 #define ILSAI_JUMP_REACH 6.0
