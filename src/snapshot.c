@@ -24,7 +24,7 @@ typedef struct identity {
     double dx, dy; /* as they were; coarsening doubles them */
     ilsa_material_def material;
     double step_cells, tolerance, dt_max;
-    int coarsen, tip, symmetry, linear, product;
+    int coarsen, tip, symmetry, loop, linear, product;
 } identity;
 
 /* Copies to or from the image, or only counts, depending on the pass. */
@@ -80,6 +80,7 @@ static identity identify(const ilsa_solver *s) {
     id.coarsen = s->def.coarsen;
     id.tip = (int)s->def.tip;
     id.symmetry = (int)s->def.symmetry;
+    id.loop = (int)s->def.loop;
     id.linear = (int)s->def.linear;
     id.product = (int)s->def.product;
     return id;

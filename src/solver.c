@@ -26,6 +26,7 @@ static ilsa_status check_options(const ilsa_solver_def *def) {
     status = status ? status : check_number("level", def->level, 1, ILSAI_LEVELS);
     status = status ? status : check_number("tip", (double)def->tip, 0, 2);
     status = status ? status : check_number("symmetry", (double)def->symmetry, 0, 4);
+    status = status ? status : check_number("loop", (double)def->loop, 0, 1);
     status = status ? status : check_number("linear", (double)def->linear, 0, 2);
     status = status ? status : check_number("product", (double)def->product, 0, 2);
     status = status ? status : check_number("coarsen", def->coarsen, 0, 1);

@@ -89,11 +89,16 @@ static double bounded(const front_seed *seed, double distance) {
     return distance < limit ? distance : limit;
 }
 
+static int is_nested(const ilsa_solver *s) {
+    return s->def.loop == ILSA_LOOP_NESTED;
+}
+
 /* The front moves on as it did in the last step. */
 static void predict(ilsa_solver *s, double dt) {
     for (int k = 0; k < s->seed_count; k++) {
         front_seed *seed = &s->seeds[k];
-        s->distance[k] = bounded(seed, seed->s0 + seed->V * dt);
+        double advance = is_nested(s) ? 0 : seed->V * dt;
+        s->distance[k] = bounded(seed, seed->s0 + advance);
     }
 }
 
@@ -150,7 +155,7 @@ static coupled_problem pose(ilsa_solver *s, double dt, double change) {
                                .linear = s->def.linear,
                                .response = s->responses,
                                .response_count = s->response_count};
-    double aim = fmax(0.3 * change, tolerance_now(s, 0));
+    double aim = is_nested(s) ? s->tolerance : fmax(0.3 * change, tolerance_now(s, 0));
     problem.tolerance = ILSAI_WIDTH_TOLERANCE * fmin(aim, 0.1);
     return problem;
 }
@@ -172,7 +177,7 @@ static double survey(ilsa_solver *s, double dt) {
  * already foreseen the front's move; afterwards the iteration is a fixed point to be accelerated.
  */
 static void move_front(ilsa_solver *s, int pass) {
-    if (pass + 1 < ILSAI_RESPONSE_PASSES) {
+    if (is_nested(s) || pass + 1 < ILSAI_RESPONSE_PASSES) {
         memcpy(s->distance, s->next_distance, (size_t)s->seed_count * sizeof *s->distance);
         return;
     }
@@ -222,7 +227,7 @@ static ilsa_status set_front(ilsa_solver *s, double dt, int pass) {
         survey(s, dt); /* for the derivatives */
         answers = 1;
     }
-    if (status == ILSA_OK && answers && pass < ILSAI_RESPONSE_PASSES) {
+    if (status == ILSA_OK && answers && !is_nested(s) && pass < ILSAI_RESPONSE_PASSES) {
         ilsai_rim_respond(s, dt);
     }
     s->profile.front += ilsai_clock() - start;
@@ -236,7 +241,8 @@ static ilsa_status set_front(ilsa_solver *s, double dt, int pass) {
 static ilsa_status iterate(ilsa_solver *s, double dt, coupled_counts *counts, ilsa_report *report,
                            double *change) {
     *change = 1;
-    for (int pass = 0; pass < ILSAI_FRONT_PASSES_MAX; pass++) {
+    int most = is_nested(s) ? ILSAI_NESTED_PASSES_MAX : ILSAI_FRONT_PASSES_MAX;
+    for (int pass = 0; pass < most; pass++) {
         report->front_iterations++;
         ilsa_status status = set_front(s, dt, pass);
         coupled_problem problem = pose(s, dt, *change);

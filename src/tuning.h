@@ -33,7 +33,8 @@
 /* Front: step of the differences that tell how a cell at the front answers, in cells. */
 #define ILSAI_DIFFERENCE 1e-5
 /* Front: passes before a step is given up, and the memory of the Anderson acceleration. */
-#define ILSAI_FRONT_PASSES_MAX 40
+#define ILSAI_FRONT_PASSES_MAX  40
+#define ILSAI_NESTED_PASSES_MAX 100
 /* Front: from this pass on a cell that has been tip or channel in the pass before stays so unless
  * the front is further than HOLD from filling it, in parts of the full ell: the widths of the two
  * kinds differ by the tip model's error, and the front would go to and fro between them. */

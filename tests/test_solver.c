@@ -129,6 +129,9 @@ static void create_refuses_bad_integers(void **state) {
         def.linear = (ilsa_linear_solver)(k % 2 ? 3 + k : -1 - k);
         check_refused(&def, ILSA_ERR_VALUE, "linear");
         def = p.def;
+        def.loop = (ilsa_front_loop)(k % 2 ? 2 + k : -1 - k);
+        check_refused(&def, ILSA_ERR_VALUE, "loop");
+        def = p.def;
         def.product = (ilsa_product)(k % 2 ? 3 + k : -1 - k);
         check_refused(&def, ILSA_ERR_VALUE, "product");
         def = p.def;
@@ -837,6 +840,27 @@ static double disagreement(ilsa_solver *a, ilsa_solver *b, int steps, int count)
     return worst / largest;
 }
 
+/* The plain algorithm goes to the same front by more passes. */
+static void loops_agree(void **state) {
+    (void)state;
+    host_scene scene = host_three_layers(51, 41);
+    scene.options.tolerance = 1e-5;
+    ilsa_solver *coupled = host_started(&scene, 7);
+    scene.options.loop = ILSA_LOOP_NESTED;
+    scene.options.linear = ILSA_LINEAR_DENSE;
+    ilsa_solver *nested = host_started(&scene, 7);
+    double dt;
+    assert_int_equal(ilsa_suggest_dt(coupled, &dt), ILSA_OK);
+    host_step(coupled, dt);
+    host_step(nested, dt);
+    long passes[] = {host_summary(coupled).total.front_iterations,
+                     host_summary(nested).total.front_iterations};
+    double off = disagreement(coupled, nested, 4, 51 * 41);
+    print_message("solver: coupled and nested loops differ by %.1e, %ld and %ld passes\n", off,
+                  passes[0], passes[1]);
+    assert_true(off < 1e-4 && passes[1] > passes[0]);
+}
+
 static void linear_solvers_agree(void **state) {
     (void)state;
     static const double tolerance[] = {0, 1e-8};
@@ -984,6 +1008,7 @@ int main(void) {
         cmocka_unit_test(survey_cells_follow_the_asymptote),
         cmocka_unit_test(the_model_says_what_is_on),
         cmocka_unit_test(linear_solvers_agree),
+        cmocka_unit_test(loops_agree),
         cmocka_unit_test(products_agree),
         cmocka_unit_test(levels_trade_speed_for_accuracy),
         cmocka_unit_test(options_override_the_level),

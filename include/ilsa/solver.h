@@ -48,6 +48,14 @@ typedef enum ilsa_symmetry {
     ILSA_SYMMETRY_XY = 4 /* both */
 } ilsa_symmetry;
 
+/* How the front and the widths of a step find each other. */
+typedef enum ilsa_front_loop {
+    ILSA_LOOP_COUPLED = 0, /* predicted, then one Newton iteration for both */
+    ILSA_LOOP_NESTED =
+        1 /* from where it was, widths solved for every place of the front, which is
+             then moved to where they want it: the plain algorithm, to compare with */
+} ilsa_front_loop;
+
 /* How the Newton system of a step is solved. */
 typedef enum ilsa_linear_solver {
     ILSA_LINEAR_AUTO = 0,  /* by the number of unknowns */
@@ -71,6 +79,7 @@ typedef struct ilsa_solver_def {
     int level;                      /* 1 fast .. 5 accurate; default 3 */
     ilsa_tip_model tip;             /* default ILSA_TIP_FULL */
     ilsa_symmetry symmetry;         /* default ILSA_SYMMETRY_AUTO */
+    ilsa_front_loop loop;           /* default ILSA_LOOP_COUPLED */
     ilsa_linear_solver linear;      /* default ILSA_LINEAR_AUTO */
     ilsa_product product;           /* default ILSA_PRODUCT_AUTO */
     int coarsen;                    /* 1: ilsa_advance coarsens the mesh at its edge; default 0 */
