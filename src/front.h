@@ -20,6 +20,7 @@ typedef struct front_seed {
     double s;                   /* distance now */
     double V;                   /* (s - s0) / dt */
     double asymptote, exponent; /* width of the asymptote at s, and d ln w / d ln s of it */
+    double deep;                /* width of the asymptote where the inner cell is */
     double w;                   /* width that s and V answer to */
     double ds_dw;               /* derivative of s by the width of the cell */
     double ds_inner;            /* and by that of the inner cell */

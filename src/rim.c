@@ -164,24 +164,20 @@ static void leak_at_front(ilsa_solver *s, const front_cell *c, double dt) {
 
 /* Mean over the cell of what the jumps of the stress behind its front add, from the seeds' sides.
  */
-static double jump_width(const ilsa_solver *s, const front_cell *c, const tipcell_front *at) {
-    double sum = 0, moved = at->ell - c->ell;
+static tipcell_growth jump_width(const ilsa_solver *s, const front_cell *c,
+                                 const tipcell_front *at) {
+    tipcell_growth sum = {0, 0};
     for (int p = 0; p < c->from.count; p++) {
         const front_seed *seed = &s->seeds[c->from.seed[p]];
         for (int k = 0; k < seed->jumps; k++) {
-            double d = seed->s + seed->jump[k].depth + moved;
-            sum += c->from.weight[p] * seed->jump[k].height * ilsai_tipcell_jump_volume(d, at);
+            double part = c->from.weight[p] * seed->jump[k].height / (s->g.dx * s->g.dy);
+            double d = seed->s + seed->jump[k].depth;
+            tipcell_growth one = ilsai_tipcell_jump_growth(d, at);
+            sum.volume += part * one.volume;
+            sum.by_ell += part * one.by_ell;
         }
     }
-    return sum / (s->g.dx * s->g.dy);
-}
-
-static int has_jumps(const ilsa_solver *s, const front_cell *c) {
-    int jumps = 0;
-    for (int p = 0; p < c->from.count; p++) {
-        jumps |= s->seeds[c->from.seed[p]].jumps;
-    }
-    return jumps;
+    return sum;
 }
 
 /*
@@ -201,13 +197,9 @@ static rim_width mean_width(const ilsa_solver *s, const front_cell *c, double dt
     if (V > 0 && c->ell > 0) {
         w.by_advance += w.value * ilsai_tip_velocity_exponent(&s->asymptote, V, c->ell) / (V * dt);
     }
-    if (has_jumps(s, c)) {
-        double small = ILSAI_DIFFERENCE * ilsai_grid_h(&s->g), least = ILSAI_JUMP_LEFT * w.value;
-        double added = jump_width(s, c, &at);
-        at.ell += small;
-        w.by_advance += (jump_width(s, c, &at) - added) / small;
-        w.value = fmax(w.value + added, least);
-    }
+    tipcell_growth added = jump_width(s, c, &at);
+    w.by_advance += added.by_ell;
+    w.value = fmax(w.value + added.volume, ILSAI_JUMP_LEFT * w.value);
     return w;
 }
 

@@ -33,11 +33,6 @@ static double smooth_width(const ilsa_solver *s, const front_seed *seed, int cel
     return fmax(w - ilsai_survey_jump_width(seed, distance), ILSAI_JUMP_LEFT * w);
 }
 
-/* Width of the asymptote at a distance from the seed's front; up to a factor for one at rest. */
-static double asymptote_at(const ilsa_solver *s, const front_seed *seed, double distance) {
-    return seed->V > 0 ? ilsai_tip_width(&s->asymptote, seed->V, distance) : sqrt(distance);
-}
-
 /*
  * The first term of the width at the centre of a survey cell, and its derivatives by the widths of
  * two cells, which are means.
@@ -55,8 +50,7 @@ static first_term split_width(const ilsa_solver *s, const front_seed *seed) {
     if (seed->inner < 0) {
         return out;
     }
-    double deep = seed->s + seed->depth, here = seed->asymptote;
-    double there = asymptote_at(s, seed, deep);
+    double deep = seed->s + seed->depth, here = seed->asymptote, there = seed->deep;
     seen.s = deep;
     there *= ilsai_edge_mean(s->mesh.dx, s->mesh.dy, &seen);
     double inner = smooth_width(s, seed, seed->inner, deep), q = inner * here / (w * there);
@@ -74,8 +68,14 @@ static first_term split_width(const ilsa_solver *s, const front_seed *seed) {
 }
 
 void ilsai_survey_settle(const ilsa_solver *s, front_seed *seed) {
-    seed->asymptote = asymptote_at(s, seed, seed->s);
-    seed->exponent = ilsai_tip_exponent(&s->asymptote, seed->V, seed->s, seed->asymptote);
+    double at[] = {seed->s, seed->s + (seed->inner >= 0 ? seed->depth : 0)};
+    tip_point point[2] = {{sqrt(at[0]), 0, 0.5}, {sqrt(at[1]), 0, 0.5}}; /* at rest, but a factor */
+    if (seed->V > 0) {
+        ilsai_tip_row(&s->asymptote, seed->V, seed->inner >= 0 ? 2 : 1, at, point);
+    }
+    seed->asymptote = point[0].w;
+    seed->exponent = point[0].exponent;
+    seed->deep = point[1].w;
 }
 
 double ilsai_survey_width(const ilsa_solver *s, const front_seed *seed) {
@@ -85,7 +85,7 @@ double ilsai_survey_width(const ilsa_solver *s, const front_seed *seed) {
 /* One evaluation of (4.9), the second term taken at the distance and velocity that seed has. */
 static double distance_for(const ilsa_solver *s, front_seed *seed, double dt) {
     first_term w = split_width(s, seed);
-    tip_front at = ilsai_tip_distance(&s->asymptote, w.width, seed->s0, dt);
+    tip_front at = ilsai_tip_distance_near(&s->asymptote, w.width, seed->s0, dt, seed->s);
     seed->ds_dw = at.ds_dw * w.by_cell;
     seed->ds_inner = at.ds_dw * w.by_inner;
     return at.s;

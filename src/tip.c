@@ -23,8 +23,12 @@
 #define MOMENT_P0 0.377               /* after (3.18) */
 #define MOMENT_P1 0.260
 
-/* Newton in ln x ends where step^2 times the step before, the error to come, is below this. */
+/*
+ * Newton in ln x ends where step^2 times the step before (1 for the first), the error to come, is
+ * below this; and in a row of widths, each begun from the last, where 1e-10 of a width will do.
+ */
 #define LAST_STEP   1e-14
+#define LAST_IN_ROW 1e-10
 #define NEWTON_MOST 20
 #define ROUNDING    1e-14
 
@@ -177,13 +181,14 @@ static void delta_p(double K, double C, const double p[2], double delta[2]) {
  * kept inside the interval that it has found, and bisection should Newton fail. The second
  * derivative that two slopes give makes the last step one of third order.
  */
-static double solve(tip_equation equation, const void *problem, double x, tip_residual *last) {
+static double solve(tip_equation equation, const void *problem, double x, double last_step,
+                    tip_residual *last) {
     double low = X_LEAST, high = X_MOST, before = 1.0, slope_before = 0.0;
     x = fmin(fmax(x, low), high);
     for (int k = 0; low < high * (1.0 - ROUNDING); k++) {
         *last = equation(problem, x);
         const double step = -last->value / last->slope;
-        if (step * step * fabs(before) < LAST_STEP) {
+        if (step * step * fabs(before) < last_step) {
             const double curvature = k > 0 ? (last->slope - slope_before) / before : 0.0;
             const double corrected = step - 0.5 * curvature / last->slope * step * step;
             return x + x * (corrected + 0.5 * corrected * corrected);
@@ -236,7 +241,7 @@ static double width_start(const width_problem *p) {
 
 static double width_solve(const width_problem *p) {
     tip_residual last;
-    return p->w_k + solve(width_residual, p, width_start(p), &last);
+    return p->w_k + solve(width_residual, p, width_start(p), LAST_STEP, &last);
 }
 
 /* Within this range no product below overflows, and none that matters vanishes. */
@@ -277,14 +282,19 @@ static double width_by_logarithms(const tip_law *law, double V, double s) {
     return exp(unit + log(width_solve(&(width_problem){exp(w_k - unit), exp(a), exp(m3)})));
 }
 
+static width_problem plain_problem(const tip_law *law, double V, double s) {
+    const double root = sqrt(s);
+    return (width_problem){law->K_prime / law->E_prime * root, 2.0 * law->C_prime * root / sqrt(V),
+                           law->mu_prime / law->E_prime * V * s * s};
+}
+
 double ilsai_tip_width(const tip_law *law, double V, double s) {
     if (!is_plain_law(law) || !is_plain(s) || !(is_plain(V) || V == 0.0))
         return width_by_logarithms(law, V, s);
-    const double root = sqrt(s), w_k = law->K_prime / law->E_prime * root;
     if (V == 0.0 || law->mu_prime == 0.0)
-        return w_k;
-    return width_solve(&(width_problem){w_k, 2.0 * law->C_prime * root / sqrt(V),
-                                        law->mu_prime / law->E_prime * V * s * s});
+        return law->K_prime / law->E_prime * sqrt(s);
+    const width_problem p = plain_problem(law, V, s);
+    return width_solve(&p);
 }
 
 /* K_hat and C_hat of (3.10) for V > 0. */
@@ -312,6 +322,42 @@ void ilsai_tip_moments(const tip_law *law, double V, double s, double w, double 
     }
     *M0 = 2.0 * w * s / (3.0 + delta[0]);
     *M1 = 2.0 * w * s * s / (5.0 + delta[1]);
+}
+
+/* A width with what (3.18) and the exponent need; next is d ln(w - w_k) / d ln s. */
+static tip_point point_at(const tip_law *law, double V, double s, double w, double *next) {
+    double K, C, delta[2];
+    scaled_variables(law, V, s, w, &K, &C);
+    delta_p(K, C, (double[]){0.0, MOMENT_P0}, delta);
+    *next = K < 1.0 ? 0.5 + 0.5 * delta[0] / (1.0 - K) : 1.0;
+    return (tip_point){w, 2.0 * w * s / (3.0 + delta[1]), 0.5 * (1.0 + delta[0])};
+}
+
+static bool is_plain_row(const tip_law *law, double V, int count, const double *s) {
+    bool plain = is_plain_law(law) && law->mu_prime > 0.0 && is_plain(V);
+    for (int k = 0; k < count; k++)
+        plain = plain && is_plain(s[k]);
+    return plain;
+}
+
+void ilsai_tip_row(const tip_law *law, double V, int count, const double *s, tip_point *point) {
+    double exponent = 1.0, e = 0.0;
+    const bool plain = V > 0.0 && is_plain_row(law, V, count, s);
+    for (int k = 0; k < count; k++) {
+        if (!plain) {
+            const double w = ilsai_tip_width(law, V, s[k]);
+            point[k] = (tip_point){w, 2.0 / 3.0 * w * s[k], 0.5};
+            if (V > 0.0 && law->mu_prime > 0.0)
+                point[k] = point_at(law, V, s[k], w, &exponent);
+            continue;
+        }
+        const width_problem p = plain_problem(law, V, s[k]);
+        tip_residual last;
+        e = k == 0
+                ? solve(width_residual, &p, width_start(&p), LAST_STEP, &last)
+                : solve(width_residual, &p, e * pow(s[k] / s[k - 1], exponent), LAST_IN_ROW, &last);
+        point[k] = point_at(law, V, s[k], p.w_k + e, &exponent);
+    }
 }
 
 double ilsai_tip_exponent(const tip_law *law, double V, double s, double w) {
@@ -406,7 +452,17 @@ static tip_front distance_of_toughness(const tip_law *law, double w, double s0, 
     return (tip_front){s, (s - s0) / dt, 2.0 * s / w};
 }
 
+/* From a distance that may be near the one sought, if it lies where one can be. */
+static double distance_guess(const distance_problem *p, double xi) {
+    const double inverse = 1.0 / xi - p->xi_rate;
+    return xi > 0.0 && inverse > 0.0 ? 1.0 / inverse : distance_start(p);
+}
+
 tip_front ilsai_tip_distance(const tip_law *law, double w, double s0, double dt) {
+    return ilsai_tip_distance_near(law, w, s0, dt, s0);
+}
+
+tip_front ilsai_tip_distance_near(const tip_law *law, double w, double s0, double dt, double near) {
     distance_problem p;
     if (law->mu_prime == 0.0)
         return distance_of_toughness(law, w, s0, dt);
@@ -416,7 +472,8 @@ tip_front ilsai_tip_distance(const tip_law *law, double w, double s0, double dt)
     p.gap = (1.0 - p.K0) * (1.0 + p.K0);
     p.xi_rate = p.K0 * p.K0 / p.gap;
     tip_residual last = {0};
-    const double x = solve(distance_residual, &p, distance_start(&p), &last);
+    const double x =
+        solve(distance_residual, &p, distance_guess(&p, (near - s0) / s0), LAST_STEP, &last);
     if (x <= X_LEAST) /* beyond the double range, both ways */
         return (tip_front){s0, 0.0, 0.0};
     if (x >= X_MOST && p.xi_rate < 1e-200)

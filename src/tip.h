@@ -13,6 +13,17 @@ typedef ilsa_material_def tip_law;
 /* Width at distance s > 0 behind a front of velocity V >= 0, (3.15); V = 0: toughness width. */
 double ilsai_tip_width(const tip_law *law, double V, double s);
 
+/* The asymptote at a distance: width, M0 over [0, s], d ln w / d ln s (1/2 .. 2/3). */
+typedef struct tip_point {
+    double w, M0, exponent;
+} tip_point;
+
+/*
+ * The same at count distances, best in falling order: each is begun from the last, and all but the
+ * first are found to 1e-10.
+ */
+void ilsai_tip_row(const tip_law *law, double V, int count, const double *s, tip_point *point);
+
 /* M0 and M1 over [0, s] of (3.18) for V >= 0 (V = 0: Delta_p = 0), w the width at s. */
 void ilsai_tip_moments(const tip_law *law, double V, double s, double w, double *M0, double *M1);
 
@@ -30,5 +41,8 @@ typedef struct tip_front {
 } tip_front;
 
 tip_front ilsai_tip_distance(const tip_law *law, double w, double s0, double dt);
+
+/* The same, begun from a distance that may be near it. */
+tip_front ilsai_tip_distance_near(const tip_law *law, double w, double s0, double dt, double near);
 
 #endif

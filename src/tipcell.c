@@ -38,20 +38,21 @@ double ilsai_tipcell_area(const tipcell_front *front) {
     return c.length * (c.H - 0.5 * rest * (rest / c.h));
 }
 
-/* The zeroth moment of a width over [0, xi], xi > 0, and the width at xi. */
-typedef struct moment {
-    double M0, w;
-} moment;
-typedef moment zeroth_moment(const void *width, double xi);
+/* Distances and weights of a sum over the wet part of the cell. */
+enum { TIPCELL_NODES = 8 };
+typedef struct wet_nodes {
+    int count;
+    double xi[TIPCELL_NODES], weight[TIPCELL_NODES];
+} wet_nodes;
 
 /*
- * Means over the strip [far - h, far], both 0 for xi < 0. The nodes are those of Gauss-Legendre in
- * r = xi^(1/3), where M0 is smooth up to the front (r^(9/2) to r^5 there): error 1e-6 with 4, and
- * with 2 where the front is far.
+ * Adds the mean over the strip [far - h, far] of what is 0 for xi < 0. The nodes are those of
+ * Gauss-Legendre in r = xi^(1/3), where M0 is smooth up to the front (r^(9/2) to r^5 there): error
+ * 1e-5 with 4, and with 2 where the front is far.
  */
-static moment strip_mean(zeroth_moment *M0, const void *of, double h, double far) {
-    static const double node[6] = {0.21132486540518712, 0.78867513459481288, 0.069431844202973712,
-                                   0.33000947820757187, 0.66999052179242813, 0.93056815579702629};
+static void add_strip(wet_nodes *n, double h, double far, double sign) {
+    static const double node[6] = {0.78867513459481288, 0.21132486540518712, 0.93056815579702629,
+                                   0.66999052179242813, 0.33000947820757187, 0.069431844202973712};
     static const double weight[6] = {0.5,
                                      0.5,
                                      0.17392742256872693,
@@ -60,63 +61,57 @@ static moment strip_mean(zeroth_moment *M0, const void *of, double h, double far
                                      0.17392742256872693};
     const double width = fmin(h, far), r0 = cbrt(far - width), r1 = cbrt(far);
     const double norm = r0 * r0 + r0 * r1 + r1 * r1, dr = width / norm;
+    const double part = sign * (width < h ? width / h : 1.0) * 3.0 / norm;
     const int first = width < 0.3 * far ? 0 : 2, end = first ? 6 : 2;
-    moment sum = {0.0, 0.0};
     for (int k = first; k < end; k++) {
-        const double r = r0 + dr * node[k], part = weight[k] * 3.0 * r * r / norm;
-        const moment at = M0(of, r * r * r);
-        sum.M0 += part * at.M0;
-        sum.w += part * at.w;
+        const double r = r0 + dr * node[k];
+        n->xi[n->count] = r * r * r;
+        n->weight[n->count++] = part * weight[k] * r * r;
     }
-    const double wet = width < h ? width / h : 1.0;
-    return (moment){sum.M0 * wet, sum.w * wet};
 }
 
-/* Integral over the wet part of the cell, by strips, and its derivative by ell. */
-static tipcell_growth wet_volume(zeroth_moment *M0, const void *of, const tipcell_front *front) {
+/* The volume is the sum of M0 by these, its derivative by ell that of the width. */
+static wet_nodes nodes_of(const tipcell_front *front) {
     const tipcell_chord c = chord_of(front);
-    if (front->ell <= 0.0)
-        return (tipcell_growth){0.0, 0.0};
-    moment mean = strip_mean(M0, of, c.h, front->ell);
-    if (front->ell > c.H) {
-        const moment beyond = strip_mean(M0, of, c.h, front->ell - c.H);
-        mean.M0 -= beyond.M0;
-        mean.w -= beyond.w;
-    }
-    return (tipcell_growth){c.length * mean.M0, c.length * mean.w};
-}
-
-/* The asymptote (3.15) behind a moving front, or with the stress intensity of one at rest. */
-typedef struct asymptote {
-    const tip_law *law;
-    double V, K_I;
-} asymptote;
-
-static moment asymptote_M0(const void *width, double xi) {
-    const asymptote *a = width;
-    const double w =
-        a->V > 0.0 ? ilsai_tip_width(a->law, a->V, xi) : a->K_I / a->law->E_prime * sqrt(xi);
-    double M0, M1;
-    ilsai_tip_moments(a->law, a->V, xi, w, &M0, &M1);
-    return (moment){M0, w};
+    wet_nodes n = {0};
+    if (front->ell > 0.0)
+        add_strip(&n, c.h, front->ell, c.length);
+    if (front->ell > c.H)
+        add_strip(&n, c.h, front->ell - c.H, -c.length);
+    return n;
 }
 
 tipcell_growth ilsai_tipcell_growth(const tip_law *law, double V, double K_I,
                                     const tipcell_front *front) {
-    return wet_volume(asymptote_M0, &(asymptote){law, V, K_I}, front);
+    const wet_nodes n = nodes_of(front);
+    tip_point point[TIPCELL_NODES];
+    tipcell_growth sum = {0.0, 0.0};
+    if (V > 0.0)
+        ilsai_tip_row(law, V, n.count, n.xi, point);
+    for (int k = 0; k < n.count; k++) {
+        const double at_rest = K_I / law->E_prime * sqrt(n.xi[k]);
+        sum.volume += n.weight[k] * (V > 0.0 ? point[k].M0 : 2.0 / 3.0 * at_rest * n.xi[k]);
+        sum.by_ell += n.weight[k] * (V > 0.0 ? point[k].w : at_rest);
+    }
+    return sum;
 }
 
 double ilsai_tipcell_volume(const tip_law *law, double V, double K_I, const tipcell_front *front) {
     return ilsai_tipcell_growth(law, V, K_I, front).volume;
 }
 
-static moment jump_M0(const void *width, double xi) {
-    const double d = *(const double *)width;
-    return (moment){ilsai_jump_moment(xi, d), ilsai_jump_width(xi, d)};
+tipcell_growth ilsai_tipcell_jump_growth(double d, const tipcell_front *front) {
+    const wet_nodes n = nodes_of(front);
+    tipcell_growth sum = {0.0, 0.0};
+    for (int k = 0; k < n.count; k++) {
+        sum.volume += n.weight[k] * ilsai_jump_moment(n.xi[k], d);
+        sum.by_ell += n.weight[k] * ilsai_jump_width(n.xi[k], d);
+    }
+    return sum;
 }
 
 double ilsai_tipcell_jump_volume(double d, const tipcell_front *front) {
-    return wet_volume(jump_M0, &d, front).volume;
+    return ilsai_tipcell_jump_growth(d, front).volume;
 }
 
 void ilsai_tipcell_enter(tipcell_history *history, double t_A) {

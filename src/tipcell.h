@@ -32,6 +32,7 @@ tipcell_growth ilsai_tipcell_growth(const tip_law *law, double V, double K_I,
 
 /* The volume of the width that a jump of height 1 adds at a distance d behind the front. */
 double ilsai_tipcell_jump_volume(double d, const tipcell_front *front);
+tipcell_growth ilsai_tipcell_jump_growth(double d, const tipcell_front *front);
 
 /* Part of the cell that is wet, area, 0 .. dx dy. */
 double ilsai_tipcell_area(const tipcell_front *front);
