@@ -171,8 +171,7 @@ static tipcell_growth jump_width(const ilsa_solver *s, const front_cell *c,
         const front_seed *seed = &s->seeds[c->from.seed[p]];
         for (int k = 0; k < seed->jumps; k++) {
             double part = c->from.weight[p] * seed->jump[k].height / (s->g.dx * s->g.dy);
-            double d = seed->s + seed->jump[k].depth;
-            tipcell_growth one = ilsai_tipcell_jump_growth(d, at);
+            tipcell_growth one = ilsai_tipcell_jump_growth(ilsai_survey_jump_depth(seed, k), at);
             sum.volume += part * one.volume;
             sum.by_ell += part * one.by_ell;
         }

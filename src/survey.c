@@ -18,10 +18,15 @@ edge_front ilsai_survey_front(const front_seed *seed) {
     return (edge_front){seed->s, seed->cos_a, seed->sin_a, seed->exponent};
 }
 
+double ilsai_survey_jump_depth(const front_seed *seed, int k) {
+    double depth = seed->s + seed->jump[k].depth;
+    return depth > 0 ? depth * depth / (depth + ILSAI_JUMP_SOFT * seed->h) : 0;
+}
+
 double ilsai_survey_jump_width(const front_seed *seed, double s) {
     double sum = 0;
     for (int k = 0; k < seed->jumps; k++) {
-        sum += seed->jump[k].height * ilsai_jump_width(s, seed->s + seed->jump[k].depth);
+        sum += seed->jump[k].height * ilsai_jump_width(s, ilsai_survey_jump_depth(seed, k));
     }
     return sum;
 }

@@ -17,6 +17,12 @@ double ilsai_survey_size(const ilsa_solver *s, const grid *g, int i, int j);
 /* Sets what the asymptote is at a seed's distance and V: before any of the functions below. */
 void ilsai_survey_settle(const ilsa_solver *s, front_seed *seed);
 
+/*
+ * How far the seed's front is beyond jump k; 0 before it. Softened: the width of a jump begins with
+ * the root of its depth, and an iteration on the front would not find its way past it.
+ */
+double ilsai_survey_jump_depth(const front_seed *seed, int k);
+
 /* Width that the jumps of the stress add at a distance s from the seed's front. */
 double ilsai_survey_jump_width(const front_seed *seed, double s);
 

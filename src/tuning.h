@@ -79,6 +79,8 @@
 #define ILSAI_SURVEY_SLOPE   0.7
 /* Survey: how far behind the cell steps of the stress are looked for, in cells. */
 #define ILSAI_JUMP_REACH 6.0
+/* Survey: how far beyond such a step the front feels half of its depth, in cells. */
+#define ILSAI_JUMP_SOFT 0.05
 /* Survey: least part of a width that is left for the asymptote once such steps have theirs. */
 #define ILSAI_JUMP_LEFT 0.02
 /* Width behind the tip: largest part that the term after the asymptote may have. */
