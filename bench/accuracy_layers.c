@@ -57,8 +57,8 @@ static void run(const layer_scene *scene, int mesh, answers *a, int wanted) {
 }
 
 /*
- * Where the values go as the cells shrink. The order is the observed one of three that approach it
- * in one direction, held within 0.5 .. 2; else the first order of the last two.
+ * Where the values go as the cells shrink: by the observed order of three where that is one, 0.5 or
+ * more, taken as 2 at most; else by the first order of the last two.
  */
 static double limit(const double v[MESHES], double *order) {
     const double a = v[1] - v[0], b = v[2] - v[1];
@@ -66,7 +66,8 @@ static double limit(const double v[MESHES], double *order) {
     if (isnan(v[2]))
         return v[1] + a;
     *order = a * b > 0 ? log2(a / b) : NAN;
-    const double p = isnan(*order) ? 1 : fmin(fmax(*order, 0.5), 2);
+    *order = *order >= 0.5 ? *order : NAN;
+    const double p = isnan(*order) ? 1 : fmin(*order, 2);
     return v[2] + b / (exp2(p) - 1);
 }
 
@@ -118,9 +119,8 @@ int main(int argc, char **argv) {
     for (; first < argc && strcmp(argv[first], "long") == 0; first++)
         is_long = 1;
     printf("\n### Three layers\n\nOn H/11, H/21%s, (observed order) -> limit: H/21 against the "
-           "limit. The limit is Richardson's with the observed order held within 0.5 .. 2, of the "
-           "last two in the first order where the values do not approach it in one direction or "
-           "are two.\n\n| scene | time, s |",
+           "limit. The limit is Richardson's with the observed order where that is 0.5 or more, at "
+           "most 2, else of the last two in the first order.\n\n| scene | time, s |",
            is_long ? ", H/42" : "");
     for (int q = 0; q < QUANTITIES; q++)
         printf(" %s |", quantity[q]);
