@@ -1,6 +1,7 @@
 #include "edge.h"
 
 #include "elasticity.h"
+#include "gauss.h"
 #include <math.h>
 
 static const double pi = 3.14159265358979323846;
@@ -50,15 +51,6 @@ double ilsai_edge_mean(double dx, double dy, const edge_front *front) {
 #define EDGE_REACH      3.5
 #define EDGE_CELLS_MOST 40
 
-/* Gauss-Legendre on 0 .. 1. */
-enum { EDGE_POINTS = 8 };
-static const double node[EDGE_POINTS] = {
-    0.019855071751231884, 0.10166676129318664, 0.23723379504183550, 0.40828267875217510,
-    0.59171732124782490,  0.76276620495816450, 0.89833323870681336, 0.98014492824876812};
-static const double weight[EDGE_POINTS] = {
-    0.050614268145188130, 0.11119051722668724, 0.15685332293894364, 0.18134189168918099,
-    0.18134189168918099,  0.15685332293894364, 0.11119051722668724, 0.050614268145188130};
-
 /* Integral of (s - R q)_+^lambda R^-2 over R > rho: with u = 1 / R and u = from + (to - from) t^6,
  * which leaves both ends smooth. */
 static double along_ray(double s, double q, double rho, double lambda) {
@@ -66,9 +58,9 @@ static double along_ray(double s, double q, double rho, double lambda) {
     if (from >= to) {
         return 0;
     }
-    for (int k = 0; k < EDGE_POINTS; k++) {
-        double t = node[k], t5 = t * t * t * t * t, u = from + (to - from) * t5 * t;
-        sum += weight[k] * t5 * pow((s * u - q) / u, lambda);
+    for (int k = 0; k < GAUSS8_POINTS; k++) {
+        double t = ilsai_gauss8_node[k], t5 = t * t * t * t * t, u = from + (to - from) * t5 * t;
+        sum += ilsai_gauss8_weight[k] * t5 * pow((s * u - q) / u, lambda);
     }
     return 6 * (to - from) * sum;
 }
@@ -90,10 +82,11 @@ static double beyond(const edge_front *f, double x, double y) {
         for (int m = 1; m < 7; m++) {
             next = stop[m] > last && stop[m] < next ? stop[m] : next;
         }
-        for (int p = 0; p < EDGE_POINTS && next < INFINITY; p++) {
-            double angle = last + (next - last) * node[p], c = cos(angle), n = sin(angle);
+        for (int p = 0; p < GAUSS8_POINTS && next < INFINITY; p++) {
+            double angle = last + (next - last) * ilsai_gauss8_node[p], c = cos(angle),
+                   n = sin(angle);
             double rho = fmin(x / fabs(c), y / fabs(n));
-            sum += weight[p] * (next - last) *
+            sum += ilsai_gauss8_weight[p] * (next - last) *
                    along_ray(f->s, c * f->cos_a + n * f->sin_a, rho, f->exponent);
         }
         last = next < INFINITY ? next : last;

@@ -17,6 +17,8 @@
  */
 #include "radial.h"
 
+#include "gauss.h"
+
 #include "tip.h"
 
 #include <math.h>
@@ -31,7 +33,7 @@ enum {
     INNER = GAUSS * LAST,
     TIP_PANELS = 4, /* between the outermost node and TIP_DEPTH */
     SAMPLES = INNER + GAUSS * TIP_PANELS,
-    ANGLES = 8, /* points for H */
+    ANGLES = GAUSS8_POINTS, /* points for H */
     STENCIL = 4
 };
 
@@ -49,13 +51,6 @@ static const double VISCOSITY_RADIUS = 0.69783755, TOUGHNESS_RADIUS = 0.85463870
 static const double GAUSS3_X[GAUSS] = {0.11270166537925831, 0.5, 0.88729833462074169};
 static const double GAUSS3_W[GAUSS] = {0.27777777777777778, 0.44444444444444444,
                                        0.27777777777777778};
-static const double GAUSS8_X[ANGLES] = {
-    0.019855071751231884, 0.10166676129318664, 0.23723379504183550, 0.40828267875217510,
-    0.59171732124782490,  0.76276620495816450, 0.89833323870681336, 0.98014492824876812};
-static const double GAUSS8_W[ANGLES] = {
-    0.050614268145188130, 0.11119051722668724, 0.15685332293894364, 0.18134189168918100,
-    0.18134189168918100,  0.15685332293894364, 0.11119051722668724, 0.050614268145188130};
-
 /* A quadrature point between nodes: fields there are sums of weight[k] field[node + k]. */
 typedef struct sample {
     int node;
@@ -149,9 +144,9 @@ static double influence(double rho, double sx, double y, double sy) {
     double range = 2.0 * asin(sqrt(0.5 * fmin(sx, sy)));
     double sum = 0.0;
     for (int k = 0; k < ANGLES; k++) {
-        double sine = sin(range * GAUSS8_X[k]);
+        double sine = sin(range * ilsai_gauss8_node[k]);
         double root = sqrt(gap + ratio * ratio * sine * sine);
-        sum += GAUSS8_W[k] * (y >= rho ? root : sine * sine / root);
+        sum += ilsai_gauss8_weight[k] * (y >= rho ? root : sine * sine / root);
     }
     return y * y * range * sum / larger;
 }
@@ -477,7 +472,7 @@ static double profile_volume(const radial_solution *solution) {
     double sum = tip_volume(exp(solution->log_width[LAST]), exp(-DEPTH), solution->tip_power);
     for (int i = 0; i < LAST; i++) {
         for (int k = 0; k < ANGLES; k++) {
-            sample y = sample_inside(i + GAUSS8_X[k], GAUSS8_W[k]);
+            sample y = sample_inside(i + ilsai_gauss8_node[k], ilsai_gauss8_weight[k]);
             sum += exp(interpolate(solution->log_width, y.node, y.weight)) * y.rho * y.measure;
         }
     }
