@@ -43,18 +43,6 @@ static double leaked_beyond(const ilsa_solver *s) {
     return sum * s->mesh.dx * s->mesh.dy;
 }
 
-/* As ilsa_advance, with steps of one part of those that the solver suggests. */
-static ilsa_status advance(ilsa_solver *solver, double time, int parts) {
-    double now = 0, dt = 0;
-    ilsa_status status = ilsa_get_time(solver, &now);
-    while (status == ILSA_OK && now < time) {
-        status = ilsa_suggest_dt(solver, &dt);
-        status = status ? status : ilsa_advance(solver, fmin(now + dt / parts, time), NULL);
-        status = status ? status : ilsa_get_time(solver, &now);
-    }
-    return status;
-}
-
 static void read_state(const ilsa_solver *solver, double value[QUANTITIES], long *steps) {
     ilsa_summary s = {0};
     ilsa_get_summary(solver, &s);
@@ -70,7 +58,7 @@ static void run(const layer_scene *scene, int cells, int way, answers *a) {
     if (solver)
         solver->velocity = velocity[way];
     for (int k = 0; k < TIMES; k++) {
-        status = status ? status : advance(solver, times[k], refinement[way]);
+        status = status ? status : layer_advance(solver, times[k], refinement[way]);
         if (status == ILSA_OK)
             read_state(solver, a->value[way][k], &a->steps[way]);
         else
@@ -119,10 +107,9 @@ int main(void) {
     for (int q = 0; q < QUANTITIES; q++)
         printf(" %s |", quantity[q]);
     printf("\n|---|---|---|---|---|---|---|---|---|\n");
-    for (int k = 0; k < LAYER_SCENES; k++)
-        for (int cells = 11; cells <= 21; cells += 10)
-            if (strcmp(layer_scenes[k].name, "symmetric_phi1") == 0 ||
-                strcmp(layer_scenes[k].name, "drop_phi1") == 0)
-                print_scene(&layer_scenes[k], cells);
+    for (int cells = 11; cells <= 21; cells += 10)
+        print_scene(&layer_scenes[LAYER_SYMMETRIC_PHI1], cells);
+    for (int cells = 11; cells <= 21; cells += 10)
+        print_scene(&layer_scenes[LAYER_DROP_PHI1], cells);
     return 0;
 }

@@ -185,22 +185,12 @@ static void marching(void) {
 
 /* ---- Exact solutions ---------------------------------------------------------------------- */
 
-enum { CASES = 5, M_TILDE = 1 };
-static const struct {
-    penny_law law;
-    double time;
-} cases[CASES] = {{{"M", 1, 0, 0}, 1},
-                  [M_TILDE] = {{"M-tilde", 1, 0, 1}, 100},
-                  {{"K", 1, 1, 0}, 1e5},
-                  {{"K-tilde", 1e-4, 1, 1}, 100},
-                  {{"phi 1e-4, tau 1", 1, 1, 0.1}, 1}};
-
 static radial_solution solution_of(int k) {
-    const ilsa_material_def scaled = {1, cases[k].law.mu_prime, cases[k].law.K_prime,
-                                      cases[k].law.C_prime};
+    const penny_law law = penny_cases[k].law;
+    const ilsa_material_def scaled = {1, law.mu_prime, law.K_prime, law.C_prime};
     radial_solution s;
-    if (ilsai_radial_at_time(&scaled, 1, cases[k].time, &s) != ILSA_OK) {
-        fprintf(stderr, "%s: no solution\n", cases[k].law.name);
+    if (ilsai_radial_at_time(&scaled, 1, penny_cases[k].time, &s) != ILSA_OK) {
+        fprintf(stderr, "%s: no solution\n", penny_cases[k].law.name);
         exit(EXIT_FAILURE);
     }
     return s;
@@ -252,11 +242,11 @@ static void survey(void) {
            "the means of the asymptote: error of the radius in %% of it, by the distance of the "
            "cell from the front, in cells; without the next term of the width, with it.\n\n"
            "| case | cells per radius | s = 0.75 | 1 | 1.5 | 2 |\n|---|---|---|---|---|---|\n");
-    for (int k = 0; k < CASES; k++) {
+    for (int k = 0; k < PENNY_CASES; k++) {
         const radial_solution s = solution_of(k);
         for (double cells = 5; cells <= 40; cells *= 2) {
             const double h = s.R / cells;
-            printf("| %s | %g |", cases[k].law.name, cells);
+            printf("| %s | %g |", penny_cases[k].law.name, cells);
             for (int i = 0; i < 4; i++)
                 printf(" %+.2f, %+.2f |", 100 * survey_error(&s, distance[i] * h, h, 0),
                        100 * survey_error(&s, distance[i] * h, h, 1));
@@ -394,7 +384,7 @@ static void elasticity_row(int k, double cells, double aspect) {
         }
         free_disc(&d);
     }
-    printf("| %s | %g | %g |", cases[k].law.name, cells, aspect);
+    printf("| %s | %g | %g |", penny_cases[k].law.name, cells, aspect);
     for (int way = 0; way < WAYS; way++)
         print_spread(&excess[way]);
     printf("\n");
@@ -444,8 +434,8 @@ static void by_distance(int k) {
         }
         free_disc(&d);
     }
-    print_bins(cases[k].law.name, bins, 0);
-    print_bins(cases[k].law.name, bins, 1);
+    print_bins(penny_cases[k].law.name, bins, 0);
+    print_bins(penny_cases[k].law.name, bins, 1);
 }
 
 static void elastic(void) {
@@ -456,7 +446,7 @@ static void elastic(void) {
            "last with the tip cells of (4.18).\n\n| case | cells per radius | dx/dy | C: mean | "
            "axis | diagonal | C + D: mean | axis | diagonal | C + D, (4.18): mean | axis | "
            "diagonal |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
-    for (int k = 0; k < CASES; k++) {
+    for (int k = 0; k < PENNY_CASES; k++) {
         for (double cells = 5; cells <= 40; cells *= 2)
             elasticity_row(k, cells, 1);
         for (double cells = 10; cells <= 20; cells *= 2)
@@ -466,7 +456,7 @@ static void elastic(void) {
            "radius, exact tips, 8 positions: C, C + D.\n\n"
            "| case | near the | < 0.75 | < 1 | < 1.25 | < 1.5 | more |\n"
            "|---|---|---|---|---|---|---|\n");
-    for (int k = 0; k < CASES; k++)
+    for (int k = 0; k < PENNY_CASES; k++)
         by_distance(k);
 }
 
@@ -505,7 +495,7 @@ static leakage leak_of(const disc *d, const radial_solution *s) {
 }
 
 static void leakoff(void) {
-    const radial_solution s = solution_of(M_TILDE);
+    const radial_solution s = solution_of(PENNY_M_TILDE);
     const double all = s.Q * s.t * (1 - s.efficiency);
     printf("\n### Leak-off of channel cells\n\nM-tilde with the exact front: what leaks from "
            "channel cells after they have filled, its error in %% of all that has leaked.\n\n"
