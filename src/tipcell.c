@@ -217,7 +217,8 @@ static double variation(tipcell_velocity velocity, const tipcell_history *histor
 static double constant_leakoff(double C_prime, const tipcell_front *front,
                                const tipcell_history *history, double t) {
     const int last = history->count - 1;
-    const double t0 = history->t[0], part = (t - t0) / (history->t[last] - t0);
+    const double t0 = history->t[0], whole = history->t[last] - t0;
+    const double part = whole > 0 ? (t - t0) / whole : 0;
     return ilsai_tipcell_leakoff_path(C_prime, front, 2, (double[]){t0, t},
                                       (double[]){0, part * history->ell[last]});
 }
