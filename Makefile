@@ -146,7 +146,7 @@ EXAMPLES := $(call names,$(wildcard examples/*.c))
 RUN      := $(wildcard examples/ilsa_run/*.c)
 
 # tests/test_*.c are programs, tests/long_*.c programs of `make check-long`, the rest is linked into
-# all of them; bench/common*.c is linked into all of bench/.
+# all of them; bench/common*.c is linked into all of bench/ and of tests/.
 TESTS      := $(call names,$(wildcard tests/test_*.c))
 TESTS_LONG := $(call names,$(wildcard tests/long_*.c))
 TESTS_WITH := $(filter-out tests/test_% tests/long_%,$(wildcard tests/*.c))
@@ -242,7 +242,7 @@ $(BENCH_PROGRAMS): $(BIN)/bench_%: $(B)/obj/bench/%.o $(call objects,$(BENCH_WIT
 	$(call link)
 
 TEST_PROGRAMS = $(TESTS:%=$(BIN)/%) $(TESTS_LONG:%=$(BIN)/%)
-$(TEST_PROGRAMS): $(BIN)/%: $(B)/obj/tests/%.o $(call objects,$(TESTS_WITH)) $(LIB_A)
+$(TEST_PROGRAMS): $(BIN)/%: $(B)/obj/tests/%.o $(call objects,$(TESTS_WITH) $(BENCH_WITH)) $(LIB_A)
 	$(call link,$(call pc_libs,$(CMOCKA_PC)))
 
 # ---- Tests --------------------------------------------------------------------------------------

@@ -11,88 +11,35 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { CASES = 5 };
-
 static int is_long;
-
-/* The four vertices and the middle of the triangle, each at a time where it is that. */
-typedef struct radial_case {
-    penny_law law;
-    double time;
-} radial_case;
-
-static const radial_case cases[CASES] = {
-    {{"M", 1, 0, 0}, 1},
-    {{"M-tilde", 1, 0, 1}, 100},
-    {{"K", 1, 1, 0}, 1e5},
-    {{"K-tilde", 1e-4, 1, 1}, 100},
-    {{"phi 1e-4, tau 1", 1, 1, 0.1}, 1},
-};
-
-/* What a run came to. */
-typedef struct outcome {
-    ilsa_status status;
-    penny reference, state;
-    radial_front front;
-    ilsa_report total;
-} outcome;
-
-static double percent(double value, double reference) {
-    return 100 * (value / reference - 1);
-}
-
-/* From a radius to a time; reads the state where it stops. */
-static outcome run(const radial_def *def, double R, double time) {
-    outcome o = {.status = ILSA_ERR_STATE};
-    ilsa_summary s;
-    ilsa_solver *solver = radial_start(def, R);
-    if (!solver)
-        return o;
-    o.status = radial_advance(solver, time, 1000);
-    o.state = radial_state(solver);
-    o.front = radial_measure(solver);
-    o.reference = radial_reference(def->law, o.state.time);
-    if (ilsa_get_summary(solver, &s) == ILSA_OK)
-        o.total = s.total;
-    ilsa_solver_destroy(&solver);
-    return o;
-}
-
-/* A case, from half its radius on, with so many cells per radius at the end. */
-static outcome run_case(const radial_case *c, double cells, double aspect, double step_cells) {
-    const penny end = radial_reference(c->law, c->time);
-    const radial_def def = {.law = c->law,
-                            .dx = end.R / cells,
-                            .aspect = aspect,
-                            .mesh_cells = 1.1 * cells + 1,
-                            .step_cells = step_cells};
-    return run(&def, 0.5 * end.R, c->time);
-}
 
 static const char *mark(ilsa_status status) {
     return status == ILSA_OK ? "" : " (stopped)";
 }
 
-static double error_R(const outcome *o) {
-    return percent(o->state.R, o->reference.R);
+static double percent(double value, double reference) {
+    return 100 * (value / reference - 1);
+}
+
+static double error_R(const radial_growth *g) {
+    return percent(g->state.R, g->reference.R);
 }
 
 /* ---- Convergence -------------------------------------------------------------------------- */
 
-static void convergence_row(const radial_case *c, double cells, double *before) {
-    const outcome o = run_case(c, cells, 1, 0);
-    const penny *a = &o.state, *b = &o.reference;
-    const double e = error_R(&o);
-    printf("| %s | %g | %+.2f%s | ", c->law.name, cells, e, mark(o.status));
+static void convergence_row(const penny_case *c, double cells, double *before) {
+    const radial_growth g = radial_grow(c, cells, 1, 0);
+    const penny error = radial_error(&g.state, &g.reference);
+    const double e = 100 * error.R;
+    printf("| %s | %g | %+.2f%s | ", c->law.name, cells, e, mark(g.status));
     if (isnan(*before))
         printf("|");
     else
         printf("%.1f |", log2(fabs(*before / e)));
     printf(" %+.2f | %+.2f | %+.4f | %+.2f | %+.2f | %+.2f | %ld | %ld |\n",
-           percent(o.front.axis, b->R), percent(o.front.diagonal, b->R),
-           a->efficiency - b->efficiency, percent(a->width, b->width),
-           percent(a->width_half, b->width_half), percent(a->pressure_half, b->pressure_half),
-           o.total.steps, o.total.rejected);
+           percent(g.front.axis, g.reference.R), percent(g.front.diagonal, g.reference.R),
+           error.efficiency, 100 * error.width, 100 * error.width_half, 100 * error.pressure_half,
+           g.total.steps, g.total.rejected);
     *before = e;
 }
 
@@ -102,48 +49,27 @@ static void convergence(void) {
            "| case | cells per radius | R, mean | order | R on x axis | R on diagonal | "
            "efficiency | w centre | w rho 0.5 | p rho 0.5 | steps | refused |\n"
            "|---|---|---|---|---|---|---|---|---|---|---|---|\n");
-    for (int k = 0; k < CASES; k++) {
+    for (int k = 0; k < PENNY_CASES; k++) {
         double before = NAN;
         for (double cells = 5; cells <= (is_long ? 80 : 40); cells *= 2)
-            convergence_row(&cases[k], cells, &before);
+            convergence_row(&penny_cases[k], cells, &before);
         fflush(stdout);
     }
 }
 
 /* ---- Roundness ---------------------------------------------------------------------------- */
 
-/* The worst over the last fifth of the growth; it comes and goes as the front passes the cells. */
-static double worst_roundness(const radial_case *c, double cells, double aspect, outcome *end) {
-    const penny last = radial_reference(c->law, c->time);
-    const radial_def def = {
-        .law = c->law, .dx = last.R / cells, .aspect = aspect, .mesh_cells = 1.1 * cells + 1};
-    ilsa_solver *solver = radial_start(&def, 0.5 * last.R);
-    double worst = 0, now = 0;
-    *end = (outcome){.status = solver ? ILSA_OK : ILSA_ERR_STATE};
-    for (int k = 0; k < 1000 && end->status == ILSA_OK && now < c->time; k++) {
-        ilsa_report report;
-        end->status = ilsa_advance_one(solver, c->time, &report);
-        end->front = radial_measure(solver);
-        now = report.time;
-        if (end->front.mean > 0.8 * last.R)
-            worst = fmax(worst, (end->front.high - end->front.low) / end->front.mean);
-    }
-    ilsa_solver_destroy(&solver);
-    return worst;
-}
-
 static void roundness(void) {
     printf("\n### Roundness\n\n(Largest - smallest radius) / mean, %%: worst of the steps over the "
            "last fifth of the radius, and at the end; cells per radius counted in dx.\n\n"
            "| case | 10 cells, dx/dy = 1 | 10 cells, 2 | 40 cells, 1 | 40 cells, 2 |\n"
            "|---|---|---|---|---|\n");
-    for (int k = 0; k < CASES; k++) {
-        printf("| %s |", cases[k].law.name);
+    for (int k = 0; k < PENNY_CASES; k++) {
+        printf("| %s |", penny_cases[k].law.name);
         for (int i = 0; i < 4; i++) {
-            outcome o;
-            const double worst = worst_roundness(&cases[k], i < 2 ? 10 : 40, 1 + i % 2, &o);
-            printf(" %.2f, %.2f%s |", 100 * worst,
-                   100 * (o.front.high - o.front.low) / o.front.mean, mark(o.status));
+            const radial_growth g = radial_grow(&penny_cases[k], i < 2 ? 10 : 40, 1 + i % 2, 0);
+            printf(" %.2f, %.2f%s |", 100 * g.roundness,
+                   100 * (g.front.high - g.front.low) / g.front.mean, mark(g.status));
         }
         printf("\n");
         fflush(stdout);
@@ -160,13 +86,13 @@ static void steps(void) {
         "tenth of the time. dt -> 0: from the last two, first order.\n\n"
         "| case | 1 cell | 0.5 | 0.25 | 0.125 | dt -> 0 | 1 against 0.25 |\n"
         "|---|---|---|---|---|---|---|\n");
-    for (int k = 0; k < CASES; k++) {
+    for (int k = 0; k < PENNY_CASES; k++) {
         double e[4];
-        printf("| %s |", cases[k].law.name);
+        printf("| %s |", penny_cases[k].law.name);
         for (int i = 0; i < 4; i++) {
-            const outcome o = run_case(&cases[k], 20, 1, size[i]);
-            e[i] = error_R(&o);
-            printf(" %+.2f%s (%ld steps) |", e[i], mark(o.status), o.total.steps);
+            const radial_growth g = radial_grow(&penny_cases[k], 20, 1, size[i]);
+            e[i] = error_R(&g);
+            printf(" %+.2f%s (%ld steps) |", e[i], mark(g.status), g.total.steps);
         }
         printf(" %+.2f | %+.2f |\n", 2 * e[3] - e[2], e[0] - e[2]);
         fflush(stdout);
@@ -177,12 +103,12 @@ static void steps(void) {
 
 static void startup_cell(int phi, int tau, double *worst) {
     const penny end = radial_row(phi, tau);
-    const radial_case c = {radial_law(radial_phi(phi)), end.time};
-    const outcome o = run_case(&c, 10, 1, 0);
-    const double e = error_R(&o);
-    printf(" %+.2f%s, %+.3f |", e, o.status ? "!" : "",
-           o.state.efficiency - o.reference.efficiency);
-    if (o.status == ILSA_OK && fabs(e) > fabs(*worst))
+    const penny_case c = {radial_law(radial_phi(phi)), end.time};
+    const radial_growth g = radial_grow(&c, 10, 1, 0);
+    const double e = error_R(&g);
+    printf(" %+.2f%s, %+.3f |", e, g.status ? "!" : "",
+           g.state.efficiency - g.reference.efficiency);
+    if (g.status == ILSA_OK && fabs(e) > fabs(*worst))
         *worst = e;
 }
 
@@ -214,9 +140,8 @@ static const char *const quantity[QUANTITIES] = {"R", "efficiency", "w centre", 
 typedef struct history {
     double error[QUANTITIES][ROWS]; /* %, of the efficiency absolute */
     ilsa_tip_regime regime[ROWS];   /* mean over the survey cells */
-    long steps, refused, products, coarsened;
-    int stalls;
-    double first_stall; /* tau; infinite */
+    long steps, refused, products;
+    int missed; /* times not reached */
     double seconds;
 } history;
 
@@ -235,61 +160,46 @@ static ilsa_tip_regime mean_regime(ilsa_solver *solver) {
 }
 
 static void record(history *h, int row, ilsa_solver *solver, const penny *reference) {
-    const penny p = radial_state(solver);
-    h->error[0][row] = percent(p.R, reference->R);
-    h->error[1][row] = p.efficiency - reference->efficiency;
-    h->error[2][row] = percent(p.width, reference->width);
-    h->error[3][row] = percent(p.width_half, reference->width_half);
-    h->error[4][row] = percent(p.pressure_half, reference->pressure_half);
+    const penny p = radial_state(solver), error = radial_error(&p, reference);
+    h->error[0][row] = 100 * error.R;
+    h->error[1][row] = error.efficiency;
+    h->error[2][row] = 100 * error.width;
+    h->error[3][row] = 100 * error.width_half;
+    h->error[4][row] = 100 * error.pressure_half;
     h->regime[row] = mean_regime(solver);
 }
 
-static void add_work(history *h, ilsa_solver **solver) {
+static void add_work(history *h, const ilsa_solver *solver) {
     ilsa_summary s;
-    if (*solver && ilsa_get_summary(*solver, &s) == ILSA_OK) {
-        h->steps += s.total.steps;
-        h->refused += s.total.rejected;
-        h->products += s.total.elasticity_products;
-        h->coarsened += s.total.coarsened;
-        h->seconds += s.total.seconds;
+    if (solver && ilsa_get_summary(solver, &s) == ILSA_OK) {
+        h->steps = s.total.steps;
+        h->refused = s.total.rejected;
+        h->products = s.total.elasticity_products;
+        h->seconds = s.total.seconds;
     }
-    ilsa_solver_destroy(solver);
-}
-
-/* A new start at a time of the table, cells per radius. */
-static ilsa_solver *restart(int phi, int tau, double cells, double largest) {
-    const penny at = radial_row(phi, tau);
-    const radial_def def = {.law = radial_law(radial_phi(phi)),
-                            .dx = at.R / cells,
-                            .aspect = 1,
-                            .mesh_cells = largest,
-                            .coarsen = 1};
-    return radial_start(&def, at.R);
 }
 
 /*
  * From tau = 10^-5.5 on, so that the start is forgotten by 1e-5: the mesh holds `largest` cells and
- * coarsens itself. After a stall a new penny is set at the next time of the table but one.
+ * coarsens itself.
  */
 static void follow(history *h, int phi, double largest) {
-    ilsa_solver *solver = restart(phi, FIRST_TAU - 2, 0.5 * largest, largest);
-    *h = (history){.first_stall = INFINITY};
+    const penny_law law = radial_law(radial_phi(phi));
+    ilsa_solver *solver = radial_start_at(law, radial_row(phi, FIRST_TAU - 2).time, largest);
+    ilsa_status status = solver ? ILSA_OK : ILSA_ERR_STATE;
+    *h = (history){0};
     for (int row = 0; row < ROWS; row++) {
         const penny reference = radial_row(phi, FIRST_TAU + row);
-        const ilsa_status status =
-            solver ? radial_advance(solver, reference.time, 200) : ILSA_ERR_STATE;
-        if (status == ILSA_OK) {
+        status = status ? status : radial_advance(solver, reference.time, 200);
+        if (status == ILSA_OK)
             record(h, row, solver, &reference);
-            continue;
-        }
-        for (int q = 0; q < QUANTITIES; q++)
-            h->error[q][row] = NAN;
-        h->first_stall = fmin(h->first_stall, reference.time);
-        h->stalls++;
-        add_work(h, &solver);
-        solver = restart(phi, FIRST_TAU + row, 0.5 * largest, largest);
+        else
+            for (int q = 0; q < QUANTITIES; q++)
+                h->error[q][row] = NAN;
+        h->missed += status != ILSA_OK;
     }
-    add_work(h, &solver);
+    add_work(h, solver);
+    ilsa_solver_destroy(&solver);
 }
 
 /* Row of the largest error; -1 if there is none. */
@@ -323,11 +233,8 @@ static void print_worst(int phi, const history *h) {
     const int row = worst_row(h->error[0]);
     if (row >= 0)
         printf(" %.2f, %.2f, %.2f |", h->regime[row].N_k, h->regime[row].N_mt, h->regime[row].N_m);
-    printf(" %ld | %ld | %.1f | %d", h->steps, h->refused, (double)h->products / (double)h->steps,
-           h->stalls);
-    if (h->stalls)
-        printf(" from %.0e on", h->first_stall);
-    printf(" | %.1f |\n", h->seconds);
+    printf(" %ld | %ld | %.1f | %d | %.1f |\n", h->steps, h->refused,
+           (double)h->products / (double)h->steps, h->missed, h->seconds);
 }
 
 static void print_decades(const history h[RADIAL_PHIS], int q) {

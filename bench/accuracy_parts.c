@@ -2,7 +2,7 @@
  * Where the error goes: parts of the method fed with the exact penny-shaped solution, one at a
  * time, as Markdown tables for docs/accuracy.md.
  *
- *     bench_accuracy_parts [marching] [survey] [elasticity]
+ *     bench_accuracy_parts [marching] [survey] [elasticity] [leakoff]
  */
 #include "common_radial.h"
 
@@ -10,6 +10,7 @@
 #include "front.h"
 #include "radial.h"
 #include "step.h"
+#include "survey.h"
 #include "tipcell.h"
 
 #include <math.h>
@@ -20,13 +21,14 @@
 /* Advance of the front in a step, in cells. */
 static const double STEP = 0.4;
 
-/* A circle of cells = 1 / h per radius around the middle cell of n by n; E' = Q = 1. */
+/* A circle around the middle one of nx by ny cells dx by dy; E' = Q = 1. */
 typedef struct disc {
-    int n;
-    double h, R; /* R is the radius; the footprint's may be behind it */
+    int nx, ny;
+    double dx, dy, R; /* R is the radius; the footprint's may be behind it */
     grid g;
     box footprint;
     unsigned char *kind;
+    double *exact; /* mean widths of survey and tip cells */
     double *width; /* of cells; 0 in the channel until solved for */
 } disc;
 
@@ -39,35 +41,55 @@ static void *allocate(size_t count, size_t size) {
     return block;
 }
 
+static int cells_of(const disc *d) {
+    return d->nx * d->ny;
+}
+
+static double x_of(const disc *d, int cell) {
+    return ilsai_grid_x(&d->g, cell % d->nx);
+}
+
+static double y_of(const disc *d, int cell) {
+    return ilsai_grid_y(&d->g, cell / d->nx);
+}
+
 static double radius_of(const disc *d, int cell) {
-    return hypot(ilsai_grid_x(&d->g, cell % d->n), ilsai_grid_y(&d->g, cell / d->n));
+    return hypot(x_of(d, cell), y_of(d, cell));
 }
 
 /* The front of radius R in a cell, as the march would see it. */
 static tipcell_front front_in(const disc *d, int cell, double R) {
-    const double x = fabs(ilsai_grid_x(&d->g, cell % d->n)), r = radius_of(d, cell);
-    const double y = fabs(ilsai_grid_y(&d->g, cell / d->n));
-    tipcell_front f = {0, r > 0 ? x / r : 1, r > 0 ? y / r : 0, d->h, d->h};
-    f.ell = 0.5 * d->h * (f.cos_a + f.sin_a) - (r - R);
+    const double r = radius_of(d, cell);
+    tipcell_front f = {.cos_a = r > 0 ? fabs(x_of(d, cell)) / r : 1,
+                       .sin_a = r > 0 ? fabs(y_of(d, cell)) / r : 0,
+                       .dx = d->dx,
+                       .dy = d->dy};
+    f.ell = 0.5 * ilsai_front_full(&d->g, f.cos_a, f.sin_a) - (r - R);
     return f;
 }
 
-/* Kinds of cells as a step would have them that ended with the footprint of radius R_kind. */
-static disc make_disc(double cells, double R, double R_kind) {
-    disc d = {.h = R / cells, .R = R};
-    d.n = 2 * ((int)ceil(cells) + 5) + 1;
-    const ilsa_mesh_def mesh = {d.n, d.n, d.h, d.h};
-    const int count = d.n * d.n;
+/*
+ * `cells` of dx per radius R, aspect = dx / dy; kinds as a step would have them that ended with the
+ * footprint of radius R_kind.
+ */
+static disc make_disc(double cells, double aspect, double R, double R_kind) {
+    const int half = (int)ceil(cells) + 5;
+    disc d = {.dx = R / cells, .R = R, .nx = 2 * half + 1, .ny = 2 * (int)(half * aspect) + 1};
+    d.dy = d.dx / aspect;
+    const ilsa_mesh_def mesh = {d.nx, d.ny, d.dx, d.dy};
+    const size_t count = (size_t)cells_of(&d);
     d.g = ilsai_grid(&mesh, 0, 0);
-    d.footprint = (box){d.n, -1, d.n, -1};
-    d.kind = allocate((size_t)count, 1);
-    d.width = allocate((size_t)count, sizeof *d.width);
-    for (int cell = 0; cell < count; cell++) {
+    d.footprint = (box){d.nx, -1, d.ny, -1};
+    d.kind = allocate(count, 1);
+    d.exact = allocate(count, sizeof *d.exact);
+    d.width = allocate(count, sizeof *d.width);
+    for (int cell = 0; cell < cells_of(&d); cell++) {
         const tipcell_front f = front_in(&d, cell, R_kind);
-        if (f.ell <= 1e-4 * d.h)
+        const double full = ilsai_front_full(&d.g, f.cos_a, f.sin_a);
+        if (f.ell <= 1e-4 * ilsai_grid_h(&d.g))
             continue;
-        d.kind[cell] = f.ell < d.h * (f.cos_a + f.sin_a) ? ILSA_CELL_TIP : ILSA_CELL_CHANNEL;
-        ilsai_box_add(&d.footprint, cell % d.n, cell / d.n);
+        d.kind[cell] = f.ell < full ? ILSA_CELL_TIP : ILSA_CELL_CHANNEL;
+        ilsai_box_add(&d.footprint, cell % d.nx, cell / d.nx);
     }
     ilsai_step_classify(&d.g, &d.footprint, d.kind);
     return d;
@@ -75,10 +97,11 @@ static disc make_disc(double cells, double R, double R_kind) {
 
 static void free_disc(disc *d) {
     free(d->kind);
+    free(d->exact);
     free(d->width);
 }
 
-/* Error of a radius seen from cells around the front, in parts of it: mean, axis, diagonal. */
+/* Errors seen from cells around the front: mean, near the axes, near the diagonals. */
 typedef struct spread {
     double sum, low, high, axis, diagonal;
     int count, on_axis, on_diagonal;
@@ -87,8 +110,7 @@ typedef struct spread {
 static const spread no_spread = {.low = INFINITY, .high = -INFINITY};
 
 static void add(spread *s, const disc *d, int cell, double error) {
-    const double x = fabs(ilsai_grid_x(&d->g, cell % d->n));
-    const double y = fabs(ilsai_grid_y(&d->g, cell / d->n));
+    const double x = fabs(x_of(d, cell)), y = fabs(y_of(d, cell));
     const double slope = fmin(x, y) / fmax(x, y);
     s->sum += error;
     s->count++;
@@ -110,31 +132,23 @@ static void print_spread(const spread *s) {
 
 /* ---- Marching ----------------------------------------------------------------------------- */
 
-/*
- * Marches from exact distances; footprint_cells: how far the footprint is behind the front;
- * curved: with the exact curvature of the front.
- */
-static void march(double cells, double footprint_cells, int curved, spread *s) {
-    disc d = make_disc(cells, 1, 1 - footprint_cells / cells);
-    const int count = d.n * d.n;
-    const box all = {0, d.n - 1, 0, d.n - 1};
-    front_seed *seeds = allocate((size_t)count, sizeof *seeds);
-    double *level = allocate((size_t)count, sizeof *level);
+/* Marches from exact distances; curved: with the exact curvature of the front. */
+static void march(double cells, double aspect, int curved, spread *s) {
+    disc d = make_disc(cells, aspect, 1, 1 - 0.5 / cells);
+    const box all = {0, d.nx - 1, 0, d.ny - 1};
+    front_seed *seeds = allocate((size_t)cells_of(&d), sizeof *seeds);
+    double *level = allocate((size_t)cells_of(&d), sizeof *level);
     front *f = ilsai_front_create();
-    int seed_count = 0, reached = 0;
-    for (int cell = 0; cell < count; cell++)
-        if (d.kind[cell] == ILSA_CELL_SURVEY) {
-            const double distance = 1 - radius_of(&d, cell);
-            seeds[seed_count++] = (front_seed){.cell = cell,
-                                               .s0 = distance,
-                                               .h = d.h,
-                                               .s = distance,
-                                               .V = 1,
-                                               .w = 1,
-                                               .inner = -1,
-                                               .curvature = curved ? 1 : 0};
-        }
-    if (f && ilsai_front_march(f, &d.g, &all, d.kind, seeds, seed_count, 2 * d.h, level) == ILSA_OK)
+    int count = 0, reached = 0;
+    for (int cell = 0; cell < cells_of(&d); cell++)
+        if (d.kind[cell] == ILSA_CELL_SURVEY)
+            seeds[count++] = (front_seed){.cell = cell,
+                                          .s = 1 - radius_of(&d, cell),
+                                          .V = 1,
+                                          .w = 1,
+                                          .inner = -1,
+                                          .curvature = curved};
+    if (f && ilsai_front_march(f, &d.g, &all, d.kind, seeds, count, 2 * d.dx, level) == ILSA_OK)
         for (const front_cell *c = ilsai_front_cells(f, &reached); reached-- > 0; c++)
             if (c->ell > 0)
                 add(s, &d, c->cell, radius_of(&d, c->cell) - c->T - 1);
@@ -144,83 +158,98 @@ static void march(double cells, double footprint_cells, int curved, spread *s) {
     free_disc(&d);
 }
 
-static void marching_row(double cells, double behind, int curved) {
+static void marching_row(double cells, double aspect, int curved) {
     spread s = no_spread;
     double difference = 0;
     for (int k = 0; k < 10; k++) {
         spread one = no_spread;
-        march(cells + 0.1 * k, behind, curved, &one);
-        march(cells + 0.1 * k, behind, curved, &s);
+        march(cells + 0.1 * k, aspect, curved, &one);
+        march(cells + 0.1 * k, aspect, curved, &s);
         difference += 0.1 * (one.high - one.low);
     }
-    printf("| %g | %g | %s |", cells, behind, curved ? "yes" : "no");
+    printf("| %g | %g | %s |", cells, aspect, curved ? "yes" : "no");
     print_spread(&s);
     printf(" %.2f |\n", 100 * difference);
 }
 
 static void marching(void) {
-    printf("\n### Marching alone\n\nExact distances in the survey cells; the radius that the tip "
-           "cells then see, error in %% of it; mean of 10 positions of the front in the cells. "
-           "Without the front's curvature the update is the paper's (4.12).\n\n"
-           "| cells per radius | footprint behind by, cells | curvature | mean | axis | diagonal | "
-           "largest - smallest |\n|---|---|---|---|---|---|---|\n");
-    for (double cells = 5; cells <= 80; cells *= 2)
+    printf("\n### Marching\n\nExact distances in the survey cells of a footprint half a cell "
+           "behind the front; the radius that the tip cells then see, error in %% of it; mean of "
+           "10 positions of the front in the cells. Without the front's curvature the update is "
+           "the paper's (4.12).\n\n| cells per radius | dx/dy | curvature | mean | axis | "
+           "diagonal | largest - smallest |\n|---|---|---|---|---|---|---|\n");
+    for (double cells = 5; cells <= 40; cells *= 2)
         for (int k = 0; k < 4; k++)
-            marching_row(cells, 0.5 * (k % 2), k / 2);
+            marching_row(cells, 1 + k % 2, k / 2);
 }
 
-/* ---- Survey cells ------------------------------------------------------------------------- */
-
-enum { CASES = 5 };
-static const struct {
-    penny_law law;
-    double time;
-} cases[CASES] = {{{"M", 1, 0, 0}, 1},
-                  {{"M-tilde", 1, 0, 1}, 100},
-                  {{"K", 1, 1, 0}, 1e5},
-                  {{"K-tilde", 1e-4, 1, 1}, 100},
-                  {{"phi 1e-4, tau 1", 1, 1, 0.1}, 1}};
+/* ---- Exact solutions ---------------------------------------------------------------------- */
 
 static radial_solution solution_of(int k) {
-    const ilsa_material_def scaled = {1, cases[k].law.mu_prime, cases[k].law.K_prime,
-                                      cases[k].law.C_prime};
+    const penny_law law = penny_cases[k].law;
+    const ilsa_material_def scaled = {1, law.mu_prime, law.K_prime, law.C_prime};
     radial_solution s;
-    if (ilsai_radial_at_time(&scaled, 1, cases[k].time, &s) != ILSA_OK) {
-        fprintf(stderr, "%s: no solution\n", cases[k].law.name);
+    if (ilsai_radial_at_time(&scaled, 1, penny_cases[k].time, &s) != ILSA_OK) {
+        fprintf(stderr, "%s: no solution\n", penny_cases[k].law.name);
         exit(EXIT_FAILURE);
     }
     return s;
 }
 
+/* Mean over a cell around (x, y) of a function of the radius over R, by 64 x 64 midpoints. */
+typedef double of_radius(const radial_solution *s, double rho, double until);
+static double mean_over(const radial_solution *s, of_radius *f, double until, double x, double y,
+                        double dx, double dy) {
+    enum { POINTS = 64 };
+    double sum = 0;
+    for (int k = 0; k < POINTS * POINTS; k++) {
+        const double u = ((k % POINTS + 0.5) / POINTS - 0.5) * dx;
+        const double v = ((k / POINTS + 0.5) / POINTS - 0.5) * dy;
+        sum += f(s, hypot(x + u, y + v) / s->R, until);
+    }
+    return sum / (POINTS * POINTS);
+}
+
+static double width_at(const radial_solution *s, double rho, double until) {
+    (void)until;
+    return ilsai_radial_width(s, rho);
+}
+
+/* ---- Survey cells ------------------------------------------------------------------------- */
+
 /*
- * The radius that a survey cell at `distance` behind the front sees by (4.9) with width w, less the
- * true one, in parts of it; the step moves the front by STEP cells of size h.
+ * The radius that a survey cell on the x axis at `distance` behind the front sees, less the true
+ * one, in parts of it, from the exact mean widths of it and of the cell two cells behind; the step
+ * moves the front by STEP cells of size h.
  */
-static double survey_error(const radial_solution *s, double distance, double w, double h) {
-    const double before = 1 - STEP * h / s->R;
-    const double dt = s->t - ilsai_radial_arrival(s, before);
-    double found = 0, V;
-    if (ilsa_tip_distance(&s->scaled, w, distance - STEP * h, dt, &found, &V) != ILSA_OK)
-        return NAN;
-    return (found - distance) / s->R;
+static double survey_error(const radial_solution *s, double distance, double h, int next_term) {
+    const double depth = 2 * h, from = s->R - distance;
+    double width[2] = {mean_over(s, width_at, 0, from, 0, h, h),
+                       mean_over(s, width_at, 0, from - depth, 0, h, h)};
+    const ilsa_solver solver = {
+        .mesh = {2, 1, h, h}, .asymptote = s->scaled, .trial = {.width = width}};
+    front_seed seed = {.s0 = distance - STEP * h, .h = h, .cos_a = 1, .s = distance};
+    const double dt = s->t - ilsai_radial_arrival(s, 1 - STEP * h / s->R);
+    seed.V = STEP * h / dt;
+    seed.inner = next_term ? 1 : -1;
+    seed.depth = depth;
+    return (ilsai_survey_distance(&solver, &seed, dt) - distance) / s->R;
 }
 
 static void survey(void) {
     const double distance[] = {0.75, 1, 1.5, 2};
-    printf(
-        "\n### Survey cells alone\n\nThe inversion (4.9) of the exact width: error of the radius "
-        "in %% of it, by the distance of the cell from the front, in cells. The tip asymptote is "
-        "of a half-plane: the penny departs from it in the first order of s/R.\n\n"
-        "| case | cells per radius | s = 0.75 | 1 | 1.5 | 2 |\n|---|---|---|---|---|---|\n");
-    for (int k = 0; k < CASES; k++) {
+    printf("\n### Survey cells\n\nThe distance that (4.9) gives with the exact mean widths and "
+           "the means of the asymptote: error of the radius in %% of it, by the distance of the "
+           "cell from the front, in cells; without the next term of the width, with it.\n\n"
+           "| case | cells per radius | s = 0.75 | 1 | 1.5 | 2 |\n|---|---|---|---|---|---|\n");
+    for (int k = 0; k < PENNY_CASES; k++) {
         const radial_solution s = solution_of(k);
         for (double cells = 5; cells <= 40; cells *= 2) {
-            printf("| %s | %g |", cases[k].law.name, cells);
-            for (int i = 0; i < 4; i++) {
-                const double h = s.R / cells, at = distance[i] * h;
-                const double w = ilsai_radial_width(&s, 1 - at / s.R);
-                printf(" %+.2f |", 100 * survey_error(&s, at, w, h));
-            }
+            const double h = s.R / cells;
+            printf("| %s | %g |", penny_cases[k].law.name, cells);
+            for (int i = 0; i < 4; i++)
+                printf(" %+.2f, %+.2f |", 100 * survey_error(&s, distance[i] * h, h, 0),
+                       100 * survey_error(&s, distance[i] * h, h, 1));
             printf("\n");
         }
     }
@@ -228,36 +257,66 @@ static void survey(void) {
 
 /* ---- Elasticity --------------------------------------------------------------------------- */
 
-/* Mean of the exact width over a cell, by 64 x 64 midpoints. */
-static double mean_width(const disc *d, const radial_solution *s, int cell) {
-    enum { POINTS = 64 };
-    double sum = 0;
-    for (int k = 0; k < POINTS * POINTS; k++) {
-        const double u = ((k % POINTS + 0.5) / POINTS - 0.5) * d->h;
-        const double v = ((k / POINTS + 0.5) / POINTS - 0.5) * d->h;
-        sum += ilsai_radial_width(
-            s, hypot(ilsai_grid_x(&d->g, cell % d->n) + u, ilsai_grid_y(&d->g, cell / d->n) + v) /
-                   s->R);
-    }
-    return sum / (POINTS * POINTS);
+static disc exact_disc(const radial_solution *s, double cells, double aspect) {
+    disc d = make_disc(cells, aspect, s->R, s->R);
+    for (int cell = 0; cell < cells_of(&d); cell++)
+        if (d.kind[cell] == ILSA_CELL_TIP || d.kind[cell] == ILSA_CELL_SURVEY)
+            d.exact[cell] = mean_over(s, width_at, 0, x_of(&d, cell), y_of(&d, cell), d.dx, d.dy);
+    return d;
 }
 
-/* Widths of the tip cells: the exact means, or (4.18) with the exact front. */
-static void set_tips(disc *d, const radial_solution *s, int exact) {
-    for (int cell = 0; cell < d->n * d->n; cell++)
-        if (d->kind[cell] == ILSA_CELL_TIP) {
+/* Widths of the tip cells: the exact means, or (4.18) with the exact front; 0 elsewhere. */
+static void set_tips(disc *d, const radial_solution *s, int by_formula) {
+    for (int cell = 0; cell < cells_of(d); cell++) {
+        const tipcell_front f = front_in(d, cell, s->R);
+        d->width[cell] = d->kind[cell] != ILSA_CELL_TIP ? 0
+                         : by_formula
+                             ? ilsai_tipcell_volume(&s->scaled, s->V, 0, &f) / (d->dx * d->dy)
+                             : d->exact[cell];
+    }
+}
+
+/* What the self terms of the survey cells lack, 0 elsewhere. */
+static void find_edges(const disc *d, const radial_solution *s, elasticity *e, double *edge) {
+    for (int cell = 0; cell < cells_of(d); cell++)
+        if (d->kind[cell] == ILSA_CELL_SURVEY) {
             const tipcell_front f = front_in(d, cell, s->R);
-            d->width[cell] = exact ? mean_width(d, s, cell)
-                                   : ilsai_tipcell_volume(&s->scaled, s->V, 0, &f) / (d->h * d->h);
+            const double distance = s->R - radius_of(d, cell);
+            const double w = ilsai_tip_width(&s->scaled, s->V, distance);
+            const edge_front seen = {distance, f.cos_a, f.sin_a,
+                                     ilsai_tip_exponent(&s->scaled, s->V, distance, w)};
+            edge[cell] = ilsai_elasticity_edge(e, &seen).value;
         }
 }
 
-/* out = C w in the channel, 0 elsewhere. */
-static void multiply(const disc *d, elasticity *e, const double *w, double *out) {
-    ilsai_elasticity_multiply(e, w, out, (size_t)d->n);
-    for (int cell = 0; cell < d->n * d->n; cell++)
-        if (d->kind[cell] < ILSA_CELL_SURVEY)
-            out[cell] = 0;
+/* Pressures from widths: the constant elements and what is added to their self terms. */
+typedef struct stiffness {
+    elasticity *e;
+    double *edge;
+} stiffness;
+
+static stiffness make_stiffness(const disc *d, const radial_solution *s, int completed) {
+    stiffness k = {NULL, allocate((size_t)cells_of(d), sizeof *k.edge)};
+    if (ilsai_elasticity_create(1, d->dx, d->dy, ILSA_PRODUCT_AUTO, &k.e) ||
+        ilsai_elasticity_set_box(k.e, d->nx, d->ny)) {
+        fprintf(stderr, "no elasticity\n");
+        exit(EXIT_FAILURE);
+    }
+    if (completed)
+        find_edges(d, s, k.e, k.edge);
+    return k;
+}
+
+static void free_stiffness(stiffness *k) {
+    ilsai_elasticity_destroy(&k->e);
+    free(k->edge);
+}
+
+/* Pressures in the channel, 0 elsewhere. */
+static void multiply(const disc *d, const stiffness *k, const double *w, double *out) {
+    ilsai_elasticity_multiply(k->e, w, out, (size_t)d->nx);
+    for (int cell = 0; cell < cells_of(d); cell++)
+        out[cell] = d->kind[cell] < ILSA_CELL_SURVEY ? 0 : out[cell] + k->edge[cell] * w[cell];
 }
 
 static double dot(const double *a, const double *b, int count) {
@@ -268,14 +327,14 @@ static double dot(const double *a, const double *b, int count) {
 }
 
 /* Channel widths for the residual r (overwritten), by conjugate gradients. */
-static void solve(disc *d, elasticity *e, double *r) {
-    const int count = d->n * d->n;
+static void solve(disc *d, const stiffness *stiff, double *r) {
+    const int count = cells_of(d);
     double *p = allocate((size_t)count, sizeof *p), *q = allocate((size_t)count, sizeof *q);
     double rr = dot(r, r, count);
-    const double goal = 1e-20 * rr;
+    const double goal = 1e-16 * rr;
     memcpy(p, r, (size_t)count * sizeof *p);
     for (int k = 0; k < 2000 && rr > goal; k++) {
-        multiply(d, e, p, q);
+        multiply(d, stiff, p, q);
         const double step = rr / dot(p, q, count);
         for (int i = 0; i < count; i++) {
             d->width[i] += step * p[i];
@@ -291,114 +350,174 @@ static void solve(disc *d, elasticity *e, double *r) {
 }
 
 /* Channel widths from the exact pressures there and the widths of the tip cells. */
-static void open_channel(disc *d, const radial_solution *s) {
-    const int count = d->n * d->n;
-    double *r = allocate((size_t)count, sizeof *r);
-    elasticity *e = NULL;
-    if (ilsai_elasticity_create(1, d->h, d->h, ILSA_PRODUCT_AUTO, &e) ||
-        ilsai_elasticity_set_box(e, d->n, d->n)) {
-        fprintf(stderr, "no elasticity\n");
-        exit(EXIT_FAILURE);
-    }
-    multiply(d, e, d->width, r);
-    for (int cell = 0; cell < count; cell++)
-        r[cell] = d->kind[cell] >= ILSA_CELL_SURVEY
-                      ? ilsai_radial_pressure(s, radius_of(d, cell) / s->R) - r[cell]
-                      : 0;
-    solve(d, e, r);
-    ilsai_elasticity_destroy(&e);
+static void open_channel(disc *d, const radial_solution *s, int completed) {
+    double *r = allocate((size_t)cells_of(d), sizeof *r);
+    stiffness k = make_stiffness(d, s, completed);
+    multiply(d, &k, d->width, r);
+    for (int cell = 0; cell < cells_of(d); cell++)
+        if (d->kind[cell] >= ILSA_CELL_SURVEY)
+            r[cell] = ilsai_radial_pressure(s, radius_of(d, cell) / s->R) - r[cell];
+    solve(d, &k, r);
+    free_stiffness(&k);
     free(r);
 }
 
-/* How much wider the survey cells are than the exact solution there, in parts of it. */
-static void compare(const disc *d, const radial_solution *s, spread *excess) {
-    for (int cell = 0; cell < d->n * d->n; cell++)
-        if (d->kind[cell] == ILSA_CELL_SURVEY) {
-            const double w = ilsai_radial_width(s, radius_of(d, cell) / s->R);
-            add(excess, d, cell, d->width[cell] / w - 1);
-        }
+/* How much wider than exact the survey cells come out, in parts of it. */
+static double excess_of(const disc *d, int cell) {
+    return d->width[cell] / d->exact[cell] - 1;
 }
 
-static void elasticity_row(int k, double cells) {
+/* Constant elements alone; self terms completed; these with tip cells of (4.18). */
+enum { WAYS = 3 };
+
+static void elasticity_row(int k, double cells, double aspect) {
     const radial_solution s = solution_of(k);
-    spread excess[2] = {no_spread, no_spread};
-    for (int shift = 0; shift < 4; shift++)
-        for (int formula = 0; formula < 2; formula++) {
-            disc d = make_disc(cells + 0.25 * shift, s.R, s.R);
-            set_tips(&d, &s, !formula);
-            open_channel(&d, &s);
-            compare(&d, &s, &excess[formula]);
-            free_disc(&d);
+    spread excess[WAYS] = {no_spread, no_spread, no_spread};
+    for (int shift = 0; shift < 4; shift++) {
+        disc d = exact_disc(&s, cells + 0.25 * shift, aspect);
+        for (int way = 0; way < WAYS; way++) {
+            set_tips(&d, &s, way == 2);
+            open_channel(&d, &s, way > 0);
+            for (int cell = 0; cell < cells_of(&d); cell++)
+                if (d.kind[cell] == ILSA_CELL_SURVEY)
+                    add(&excess[way], &d, cell, excess_of(&d, cell));
         }
-    printf("| %s | %g |", cases[k].law.name, cells);
-    for (int formula = 0; formula < 2; formula++)
-        print_spread(&excess[formula]);
+        free_disc(&d);
+    }
+    printf("| %s | %g | %g |", penny_cases[k].law.name, cells, aspect);
+    for (int way = 0; way < WAYS; way++)
+        print_spread(&excess[way]);
     printf("\n");
     fflush(stdout);
 }
 
-enum { BINS = 6 };
-static const double bin_end[BINS] = {0.75, 1, 1.25, 1.5, 1.75, 2.25};
+enum { BINS = 5 };
+static const double bin_end[BINS] = {0.75, 1, 1.25, 1.5, 2.25};
 
-static void add_to_bins(const disc *d, const radial_solution *s, spread bins[BINS]) {
-    for (int cell = 0; cell < d->n * d->n; cell++) {
-        const double r = radius_of(d, cell), distance = (s->R - r) / d->h;
+static void add_to_bins(const disc *d, spread bins[BINS]) {
+    for (int cell = 0; cell < cells_of(d); cell++) {
+        const double distance = (d->R - radius_of(d, cell)) / d->dx;
         int bin = 0;
         if (d->kind[cell] != ILSA_CELL_SURVEY)
             continue;
         while (bin < BINS - 1 && distance >= bin_end[bin])
             bin++;
-        add(&bins[bin], d, cell, d->width[cell] / ilsai_radial_width(s, r / s->R) - 1);
+        add(&bins[bin], d, cell, excess_of(d, cell));
     }
+}
+
+static void print_bins(const char *name, spread bins[2][BINS], int diagonal) {
+    printf("| %s | %s |", name, diagonal ? "diagonal" : "axis");
+    for (int b = 0; b < BINS; b++) {
+        const int count = diagonal ? bins[0][b].on_diagonal : bins[0][b].on_axis;
+        double mean[2];
+        for (int way = 0; way < 2; way++)
+            mean[way] = 100 * (diagonal ? bins[way][b].diagonal : bins[way][b].axis) / count;
+        if (count)
+            printf(" %+.2f, %+.2f |", mean[0], mean[1]);
+        else
+            printf(" - |");
+    }
+    printf("\n");
 }
 
 static void by_distance(int k) {
     const radial_solution s = solution_of(k);
-    spread bins[BINS] = {no_spread, no_spread, no_spread, no_spread, no_spread, no_spread};
+    spread bins[2][BINS] = {{no_spread, no_spread, no_spread, no_spread, no_spread},
+                            {no_spread, no_spread, no_spread, no_spread, no_spread}};
     for (int shift = 0; shift < 8; shift++) {
-        disc d = make_disc(40 + 0.125 * shift, s.R, s.R);
-        set_tips(&d, &s, 1);
-        open_channel(&d, &s);
-        add_to_bins(&d, &s, bins);
+        disc d = exact_disc(&s, 20 + 0.125 * shift, 1);
+        for (int way = 0; way < 2; way++) {
+            set_tips(&d, &s, 0);
+            open_channel(&d, &s, way);
+            add_to_bins(&d, bins[way]);
+        }
         free_disc(&d);
     }
-    for (int diagonal = 0; diagonal < 2; diagonal++) {
-        printf("| %s | %s |", cases[k].law.name, diagonal ? "diagonal" : "axis");
-        for (int b = 0; b < BINS; b++) {
-            const int count = diagonal ? bins[b].on_diagonal : bins[b].on_axis;
-            if (count)
-                printf(" %+.2f |", 100 * (diagonal ? bins[b].diagonal : bins[b].axis) / count);
-            else
-                printf(" - |");
-        }
-        printf("\n");
-    }
+    print_bins(penny_cases[k].law.name, bins, 0);
+    print_bins(penny_cases[k].law.name, bins, 1);
 }
 
 static void elastic(void) {
-    printf(
-        "\n### Elasticity alone\n\nThe exact front, the exact pressure in the channel, the exact "
-        "volumes of the tip cells or those of (4.18): how much wider than the exact solution "
-        "elasticity makes the survey cells, in %% of their width. Mean of 4 positions of the "
-        "front in the cells.\n\n| case | cells per radius | exact tips: mean | axis | diagonal "
-        "| tips of (4.18): mean | axis | diagonal |\n|---|---|---|---|---|---|---|---|\n");
-    for (int k = 0; k < CASES; k++)
-        for (double cells = 5; cells <= 80; cells *= 2)
-            elasticity_row(k, cells);
-    printf("\nThe same by the distance of the survey cell from the front, in cells; 40 cells per "
-           "radius, exact tips, 8 positions.\n\n"
-           "| case | near the | < 0.75 | < 1 | < 1.25 | < 1.5 | < 1.75 | more |\n"
-           "|---|---|---|---|---|---|---|---|\n");
-    for (int k = 0; k < CASES; k++)
+    printf("\n### Elasticity\n\nThe exact front, the exact pressure in the channel, the exact "
+           "volumes of the tip cells: how much wider than the exact solution elasticity makes the "
+           "survey cells, mean over each of them, in %% of it; mean of 4 positions of the front in "
+           "the cells. C: constant elements alone; C + D: self terms completed beside the front; "
+           "last with the tip cells of (4.18).\n\n| case | cells per radius | dx/dy | C: mean | "
+           "axis | diagonal | C + D: mean | axis | diagonal | C + D, (4.18): mean | axis | "
+           "diagonal |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+    for (int k = 0; k < PENNY_CASES; k++) {
+        for (double cells = 5; cells <= 40; cells *= 2)
+            elasticity_row(k, cells, 1);
+        for (double cells = 10; cells <= 20; cells *= 2)
+            elasticity_row(k, cells, 2);
+    }
+    printf("\nThe same by the distance of the survey cell from the front, in cells; 20 cells per "
+           "radius, exact tips, 8 positions: C, C + D.\n\n"
+           "| case | near the | < 0.75 | < 1 | < 1.25 | < 1.5 | more |\n"
+           "|---|---|---|---|---|---|---|\n");
+    for (int k = 0; k < PENNY_CASES; k++)
         by_distance(k);
+}
+
+/* ---- Leak-off of channel cells ------------------------------------------------------------ */
+
+/* Leaked per area at rho from the time `from` on, over 2 C'. */
+static double leaked_at(const radial_solution *s, double rho, double from) {
+    const double arrival = ilsai_radial_arrival(s, fmin(rho, 1));
+    return sqrt(s->t - arrival) - sqrt(fmax(from - arrival, 0));
+}
+
+/* What leaks from the full cells once they are full: exact, by the centre, by the mean. */
+typedef struct leakage {
+    double exact, centre, mean;
+} leakage;
+
+static leakage leak_of(const disc *d, const radial_solution *s) {
+    leakage sum = {0, 0, 0};
+    for (int cell = 0; cell < cells_of(d); cell++) {
+        const tipcell_front f = front_in(d, cell, s->R);
+        const double half = 0.5 * ilsai_front_full(&d->g, f.cos_a, f.sin_a), area = d->dx * d->dy;
+        const double r = radius_of(d, cell), C = s->scaled.C_prime;
+        if (d->kind[cell] < ILSA_CELL_SURVEY)
+            continue;
+        const double entered = ilsai_radial_arrival(s, fmax(r - half, 0) / s->R);
+        const double centre = ilsai_radial_arrival(s, r / s->R);
+        const double filled = ilsai_radial_arrival(s, (r + half) / s->R), age = filled - centre;
+        const double e = fmin(ilsai_tipcell_spread(&f, filled - entered), age);
+        const double dt = s->t - filled;
+        sum.exact += 2 * C * area *
+                     mean_over(s, leaked_at, filled, x_of(d, cell), y_of(d, cell), d->dx, d->dy);
+        sum.centre += area * ilsai_tipcell_full_leakoff_step(C, age, dt, 0);
+        sum.mean += area * ilsai_tipcell_full_leakoff_step(C, age, dt, e);
+    }
+    return sum;
+}
+
+static void leakoff(void) {
+    const radial_solution s = solution_of(PENNY_M_TILDE);
+    const double all = s.Q * s.t * (1 - s.efficiency);
+    printf("\n### Leak-off of channel cells\n\nM-tilde with the exact front: what leaks from "
+           "channel cells after they have filled, its error in %% of all that has leaked.\n\n"
+           "| cells per radius | dx/dy | root at the centre, (4.8) | mean of the root |\n"
+           "|---|---|---|---|\n");
+    for (int aspect = 1; aspect <= 2; aspect++)
+        for (double cells = 10; cells <= 80; cells *= 2) {
+            disc d = make_disc(cells, aspect, s.R, s.R);
+            const leakage leak = leak_of(&d, &s);
+            printf("| %g | %d | %+.2f | %+.2f |\n", cells, aspect,
+                   100 * (leak.centre - leak.exact) / all, 100 * (leak.mean - leak.exact) / all);
+            free_disc(&d);
+        }
 }
 
 int main(int argc, char **argv) {
     static const struct {
         const char *name;
         void (*print)(void);
-    } tables[] = {{"marching", marching}, {"survey", survey}, {"elasticity", elastic}};
-    for (int t = 0; t < 3; t++) {
+    } tables[] = {
+        {"marching", marching}, {"survey", survey}, {"elasticity", elastic}, {"leakoff", leakoff}};
+    for (int t = 0; t < 4; t++) {
         int chosen = argc < 2;
         for (int k = 1; k < argc; k++)
             chosen |= strcmp(argv[k], tables[t].name) == 0;

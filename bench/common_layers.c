@@ -90,6 +90,17 @@ ilsa_solver *layer_start(const layer_scene *scene, int cells) {
     return layer_start_as(scene, cells, &(layer_how){ILSA_TIP_FULL, 0.01, 5});
 }
 
+ilsa_status layer_advance(ilsa_solver *solver, double time, int pieces) {
+    double now = 0, dt = 0;
+    ilsa_status status = ilsa_get_time(solver, &now);
+    while (status == ILSA_OK && now < time) {
+        status = ilsa_suggest_dt(solver, &dt);
+        status = status ? status : ilsa_advance(solver, fmin(now + dt / pieces, time), NULL);
+        status = status ? status : ilsa_get_time(solver, &now);
+    }
+    return status;
+}
+
 ilsa_solver *fig_start(const fig_scene *scene) {
     const ilsa_mesh_def grid = {41, 41, scene->dx, scene->dx};
     const ilsa_material_def scaled = {1, 1, 1, scene->C_prime};

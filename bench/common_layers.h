@@ -12,7 +12,7 @@ typedef struct layer_scene {
     int nx, ny; /* at H/21 */
 } layer_scene;
 
-enum { LAYER_SCENES = 9, LAYER_TIMES = 5 };
+enum { LAYER_SYMMETRIC_PHI1 = 2, LAYER_DROP_PHI1 = 8, LAYER_SCENES = 9, LAYER_TIMES = 5 };
 extern const layer_scene layer_scenes[LAYER_SCENES];
 extern const double layer_times[LAYER_TIMES];
 
@@ -29,6 +29,9 @@ typedef struct layer_how {
     double rate, radius; /* of the source at first, of the penny */
 } layer_how;
 ilsa_solver *layer_start_as(const layer_scene *scene, int cells, const layer_how *how);
+
+/* As ilsa_advance, with steps of one part of those that the solver suggests. */
+ilsa_status layer_advance(ilsa_solver *solver, double time, int pieces);
 
 /* Section 5.1, Figs. 4 and 5: E' = mu' = K' = Q = 1, 41 x 41 cells, a penny of 5 cells. */
 typedef struct fig_scene {

@@ -1,5 +1,3 @@
-#define _POSIX_C_SOURCE 200809L
-
 #include "common_radial.h"
 
 #include "radial.h"
@@ -9,6 +7,14 @@
 #include <stdlib.h>
 
 static const char path[] = "tests/data/radial_history.csv";
+
+const penny_case penny_cases[PENNY_CASES] = {
+    [PENNY_M] = {{"M", 1, 0, 0}, 1},
+    [PENNY_M_TILDE] = {{"M-tilde", 1, 0, 1}, 100},
+    [PENNY_K] = {{"K", 1, 1, 0}, 1e5},
+    [PENNY_K_TILDE] = {{"K-tilde", 1e-4, 1, 1}, 100},
+    [PENNY_MIDDLE] = {{"phi 1e-4, tau 1", 1, 1, 0.1}, 1},
+};
 
 static penny table[RADIAL_PHIS][RADIAL_TAUS];
 static double slope[RADIAL_PHIS][RADIAL_TAUS]; /* d ln R / d ln tau */
@@ -146,6 +152,15 @@ double radial_time_of(penny_law law, double R) {
     return s.t;
 }
 
+penny radial_error(const penny *found, const penny *reference) {
+    return (penny){.time = found->time,
+                   .R = found->R / reference->R - 1,
+                   .efficiency = found->efficiency - reference->efficiency,
+                   .width = found->width / reference->width - 1,
+                   .width_half = found->width_half / reference->width_half - 1,
+                   .pressure_half = found->pressure_half / reference->pressure_half - 1};
+}
+
 static ilsa_solver *failed(const char *what, ilsa_solver *solver) {
     fprintf(stderr, "%s: %s\n", what, ilsa_last_error(solver));
     ilsa_solver_destroy(&solver);
@@ -181,6 +196,13 @@ static ilsa_solver *create(const radial_def *def) {
 ilsa_solver *radial_start(const radial_def *def, double R) {
     ilsa_solver *solver = create(def);
     return solver && ilsa_start_radial(solver, R) ? failed("start", solver) : solver;
+}
+
+ilsa_solver *radial_start_at(penny_law law, double time, double largest) {
+    const double R = radial_reference(law, time).R;
+    const radial_def def = {
+        .law = law, .dx = 2 * R / largest, .aspect = 1, .mesh_cells = largest, .coarsen = 1};
+    return radial_start(&def, R);
 }
 
 ilsa_status radial_advance(ilsa_solver *solver, double time, long attempts) {
@@ -251,6 +273,39 @@ penny radial_state(ilsa_solver *solver) {
     p.width_half = on_axis(&m, width, 0.5 * p.R);
     p.pressure_half = on_axis(&m, pressure, 0.5 * p.R);
     return p;
+}
+
+static void finish(radial_growth *g, ilsa_solver *solver, penny_law law) {
+    ilsa_summary s = {0};
+    ilsa_get_summary(solver, &s);
+    g->state = radial_state(solver);
+    g->reference = radial_reference(law, g->state.time);
+    g->balance = (s.volume_fracture + s.volume_leaked) / s.volume_injected - 1;
+    g->total = s.total;
+}
+
+radial_growth radial_grow(const penny_case *c, double cells, double aspect, double step_cells) {
+    const double R = radial_reference(c->law, c->time).R;
+    const radial_def def = {.law = c->law,
+                            .dx = R / cells,
+                            .aspect = aspect,
+                            .mesh_cells = 1.1 * cells + 1,
+                            .step_cells = step_cells};
+    radial_growth g = {.status = ILSA_ERR_STATE};
+    ilsa_solver *solver = radial_start(&def, 0.5 * R);
+    if (!solver)
+        return g;
+    ilsa_report report = {0};
+    g.status = ILSA_OK;
+    while (g.status == ILSA_OK && report.time < c->time) {
+        g.status = ilsa_advance_one(solver, c->time, &report);
+        g.front = radial_measure(solver);
+        if (g.front.mean > 0.8 * R)
+            g.roundness = fmax(g.roundness, (g.front.high - g.front.low) / g.front.mean);
+    }
+    finish(&g, solver, c->law);
+    ilsa_solver_destroy(&solver);
+    return g;
 }
 
 static int compare(const void *a, const void *b) {

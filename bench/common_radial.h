@@ -1,6 +1,6 @@
 /*
- * Radial runs of the planar solver against the reference of tests/data, for the accuracy tables.
- * E' = Q = 1 throughout. The programs run from the top of the tree.
+ * Radial runs of the planar solver against the reference of tests/data, for the accuracy tables and
+ * for tests/test_accuracy.c. E' = Q = 1 throughout. The programs run from the top of the tree.
  */
 #ifndef BENCH_COMMON_RADIAL_H
 #define BENCH_COMMON_RADIAL_H
@@ -20,6 +20,15 @@ typedef struct penny_law {
     const char *name;
     double mu_prime, K_prime, C_prime;
 } penny_law;
+
+/* The four vertices and the middle of the triangle, each at a time where it is that. */
+typedef struct penny_case {
+    penny_law law;
+    double time;
+} penny_case;
+
+enum { PENNY_M, PENNY_M_TILDE, PENNY_K, PENNY_K_TILDE, PENNY_MIDDLE, PENNY_CASES };
+extern const penny_case penny_cases[PENNY_CASES];
 
 /* How it is run. */
 typedef struct radial_def {
@@ -58,8 +67,17 @@ penny radial_reference(penny_law law, double time);
 /* And the time at which it has a radius. */
 double radial_time_of(penny_law law, double R);
 
+/* By how much a penny differs: in parts of the reference, of the efficiency absolute. */
+penny radial_error(const penny *found, const penny *reference);
+
 /* Starts at a radius; NULL and a message on stderr if that fails. */
 ilsa_solver *radial_start(const radial_def *def, double R);
+
+/*
+ * The same from the penny at a time, on a mesh that holds `largest` cells per radius, which are
+ * half as many now, and coarsens itself.
+ */
+ilsa_solver *radial_start_at(penny_law law, double time, double largest);
 
 /* As ilsa_advance, and gives up with ILSA_STALLED after so many attempts, refused ones included. */
 ilsa_status radial_advance(ilsa_solver *solver, double time, long attempts);
@@ -67,6 +85,22 @@ ilsa_status radial_advance(ilsa_solver *solver, double time, long attempts);
 /* Where it stands: radii of the front; width and pressure on the x axis. */
 radial_front radial_measure(ilsa_solver *solver);
 penny radial_state(ilsa_solver *solver);
+
+/* What a case came to. */
+typedef struct radial_growth {
+    ilsa_status status;
+    penny reference, state; /* where it ended */
+    radial_front front;
+    double roundness; /* (largest - smallest radius) / mean: worst over the last fifth of R */
+    double balance;   /* (fracture + leaked) / injected - 1 */
+    ilsa_report total;
+} radial_growth;
+
+/*
+ * From half the radius to the time of the case, with so many cells of dx per radius at the end;
+ * aspect = dx / dy; step_cells as in the solver's definition, 0: by level.
+ */
+radial_growth radial_grow(const penny_case *c, double cells, double aspect, double step_cells);
 
 /* Middle of count values, which are sorted in place; NaN for none. */
 double radial_median(double *values, int count);

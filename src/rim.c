@@ -153,7 +153,8 @@ static double leak_for(const ilsa_solver *s, const front_cell *c, double dt,
                        tipcell_history *history) {
     tipcell_front at = {c->ell, c->cos_a, c->sin_a, s->g.dx, s->g.dy};
     *history = path_in_cell(s, c, dt);
-    return ilsai_tipcell_leakoff_last(s->material.C_prime, &at, history) / (s->g.dx * s->g.dy);
+    return ilsai_tipcell_leakoff_last(s->material.C_prime, s->velocity, &at, history) /
+           (s->g.dx * s->g.dy);
 }
 
 static void leak_at_front(ilsa_solver *s, const front_cell *c, double dt) {

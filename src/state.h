@@ -65,6 +65,7 @@ struct ilsa_solver {
     point_source *sources;
     ilsa_solver_def def; /* options; its pointers are NULL */
     double step_cells, tolerance;
+    tipcell_velocity velocity; /* of the front that leak-off at it counts with */
     int stress_mirror_x, stress_mirror_y;
 
     state now;

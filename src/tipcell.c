@@ -212,8 +212,10 @@ double ilsai_tipcell_leakoff_path(double C_prime, const tipcell_front *front, in
 }
 
 /* How far the velocity's change decides for the history: 0 to 1 around 20 %. */
-static double variation(const tipcell_history *history) {
+static double variation(tipcell_velocity velocity, const tipcell_history *history) {
     const int n = history->count;
+    if (velocity != TIPCELL_BY_CHANGE)
+        return velocity == TIPCELL_HISTORY;
     const double *t = history->t, *ell = history->ell;
     const double first = (ell[1] - ell[0]) / (t[1] - t[0]);
     const double last = (ell[n - 1] - ell[n - 2]) / (t[n - 1] - t[n - 2]);
@@ -225,7 +227,8 @@ static double variation(const tipcell_history *history) {
 static double constant_leakoff(double C_prime, const tipcell_front *front,
                                const tipcell_history *history, double t) {
     const int last = history->count - 1;
-    const double t0 = history->t[0], part = (t - t0) / (history->t[last] - t0);
+    const double t0 = history->t[0], whole = history->t[last] - t0;
+    const double part = whole > 0 ? (t - t0) / whole : 0;
     return ilsai_tipcell_leakoff_path(C_prime, front, 2, (double[]){t0, t},
                                       (double[]){0, part * history->ell[last]});
 }
@@ -238,7 +241,7 @@ static double blend(double varied, double constant, double path) {
 double ilsai_tipcell_leakoff(double C_prime, const tipcell_front *front,
                              const tipcell_history *history) {
     const int n = history->count;
-    const double varied = n > 2 ? variation(history) : 0;
+    const double varied = n > 2 ? variation(TIPCELL_BY_CHANGE, history) : 0;
     const double constant =
         varied < 1 ? constant_leakoff(C_prime, front, history, history->t[n - 1]) : 0;
     const double path =
@@ -246,13 +249,13 @@ double ilsai_tipcell_leakoff(double C_prime, const tipcell_front *front,
     return blend(varied, constant, path);
 }
 
-double ilsai_tipcell_leakoff_last(double C_prime, const tipcell_front *front,
-                                  const tipcell_history *history) {
+double ilsai_tipcell_leakoff_last(double C_prime, tipcell_velocity velocity,
+                                  const tipcell_front *front, const tipcell_history *history) {
     const int n = history->count;
     const double *t = history->t, *ell = history->ell;
     if (n <= 2)
         return ilsai_tipcell_leakoff(C_prime, front, history);
-    const double varied = variation(history);
+    const double varied = variation(velocity, history);
     const double constant = varied < 1 ? constant_leakoff(C_prime, front, history, t[n - 1]) -
                                              constant_leakoff(C_prime, front, history, t[n - 2])
                                        : 0;

@@ -73,9 +73,16 @@ void ilsai_tipcell_record(tipcell_history *history, double t, double ell);
 double ilsai_tipcell_leakoff(double C_prime, const tipcell_front *front,
                              const tipcell_history *history);
 
+/* Which velocity counts: as the change of it decides, or one of the two whatever it does. */
+typedef enum tipcell_velocity {
+    TIPCELL_BY_CHANGE,
+    TIPCELL_HISTORY,
+    TIPCELL_CONSTANT
+} tipcell_velocity;
+
 /* The part of it that has leaked since the last knot but one, by one and the same formula. */
-double ilsai_tipcell_leakoff_last(double C_prime, const tipcell_front *front,
-                                  const tipcell_history *history);
+double ilsai_tipcell_leakoff_last(double C_prime, tipcell_velocity velocity,
+                                  const tipcell_front *front, const tipcell_history *history);
 
 /*
  * The same for a path of any number of knots, without the choice: the front moves linearly from

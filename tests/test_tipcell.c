@@ -443,6 +443,42 @@ static void test_velocity_switch_is_continuous(void **state) {
     assert_below(largest, 0.002 * before);
 }
 
+/* The front enters a cell at speed 1 and slows down to a quarter of it: where it is. */
+static double slowed(double t) {
+    return 0.25 * t + 0.375 * (1 - exp(-2 * t));
+}
+
+/* What leaks until t = 2 in so many steps, each its share by the path as it is then. */
+static double leaked_in_steps(tipcell_velocity velocity, int steps) {
+    tipcell_front front = {0, 0.8, 0.6, 1, 1};
+    tipcell_history history;
+    double sum = 0;
+    ilsai_tipcell_enter(&history, 0);
+    for (int k = 1; k <= steps; k++) {
+        front.ell = slowed(2.0 * k / steps);
+        ilsai_tipcell_record(&history, 2.0 * k / steps, front.ell);
+        sum += ilsai_tipcell_leakoff_last(1, velocity, &front, &history);
+    }
+    return sum;
+}
+
+/*
+ * As into a barrier: with the history, and so with the choice, steps eight times longer make little
+ * difference; the shares of a constant velocity add up to another volume.
+ */
+static void test_steps_of_a_front_that_slows(void **state) {
+    (void)state;
+    const double fine = leaked_in_steps(TIPCELL_HISTORY, 64);
+    const double history = leaked_in_steps(TIPCELL_HISTORY, 8) / fine - 1;
+    const double chosen = leaked_in_steps(TIPCELL_BY_CHANGE, 8) / fine - 1;
+    const double constant = leaked_in_steps(TIPCELL_CONSTANT, 8) / fine - 1;
+    print_message("slowed to 1/4: history %+.1e, choice %+.1e, constant velocity %+.1e\n", history,
+                  chosen, constant);
+    assert_below(fabs(history), 0.006);
+    assert_below(fabs(chosen), 0.006);
+    assert_true(fabs(constant) > 0.05);
+}
+
 /* ---- Full cells --------------------------------------------------------------------------- */
 
 /* The front passes the cell at constant speed and goes on: the path against the mean of the root.
@@ -508,6 +544,7 @@ int main(void) {
         cmocka_unit_test(test_history_thinning),
         cmocka_unit_test(test_velocity_switch),
         cmocka_unit_test(test_velocity_switch_is_continuous),
+        cmocka_unit_test(test_steps_of_a_front_that_slows),
         cmocka_unit_test(full_cells_leak_their_mean),
         cmocka_unit_test(full_cells_without_spread),
     };
