@@ -2,10 +2,6 @@
 
 #include "jump.h"
 #include <math.h>
-
-/* Change of velocity that counts, and the width of the passage about it. */
-#define TIPCELL_VARIED 0.2
-#define TIPCELL_BLEND  0.1
 #include <stddef.h>
 
 /*
@@ -211,58 +207,31 @@ double ilsai_tipcell_leakoff_path(double C_prime, const tipcell_front *front, in
     return 2.0 * C_prime * sum;
 }
 
-/* How far the velocity's change decides for the history: 0 to 1 around 20 %. */
-static double variation(tipcell_velocity velocity, const tipcell_history *history) {
-    const int n = history->count;
-    if (velocity != TIPCELL_BY_CHANGE)
-        return velocity == TIPCELL_HISTORY;
-    const double *t = history->t, *ell = history->ell;
-    const double first = (ell[1] - ell[0]) / (t[1] - t[0]);
-    const double last = (ell[n - 1] - ell[n - 2]) / (t[n - 1] - t[n - 2]);
-    const double change = fabs(last - first) - (TIPCELL_VARIED - 0.5 * TIPCELL_BLEND) * first;
-    return first > 0 ? fmin(1, fmax(0, change / (TIPCELL_BLEND * first))) : 1;
+double ilsai_tipcell_leakoff(double C_prime, const tipcell_front *front,
+                             const tipcell_history *history) {
+    return ilsai_tipcell_leakoff_path(C_prime, front, history->count, history->t, history->ell);
 }
 
 /* One segment up to the last knot, or up to the time t on the way there. */
 static double constant_leakoff(double C_prime, const tipcell_front *front,
                                const tipcell_history *history, double t) {
     const int last = history->count - 1;
-    const double t0 = history->t[0], whole = history->t[last] - t0;
-    const double part = whole > 0 ? (t - t0) / whole : 0;
+    const double t0 = history->t[0], part = (t - t0) / (history->t[last] - t0);
     return ilsai_tipcell_leakoff_path(C_prime, front, 2, (double[]){t0, t},
                                       (double[]){0, part * history->ell[last]});
-}
-
-/* Between the two formulas, as far as the velocity's change decides. */
-static double blend(double varied, double constant, double path) {
-    return constant + varied * (path - constant);
-}
-
-double ilsai_tipcell_leakoff(double C_prime, const tipcell_front *front,
-                             const tipcell_history *history) {
-    const int n = history->count;
-    const double varied = n > 2 ? variation(TIPCELL_BY_CHANGE, history) : 0;
-    const double constant =
-        varied < 1 ? constant_leakoff(C_prime, front, history, history->t[n - 1]) : 0;
-    const double path =
-        varied > 0 ? ilsai_tipcell_leakoff_path(C_prime, front, n, history->t, history->ell) : 0;
-    return blend(varied, constant, path);
 }
 
 double ilsai_tipcell_leakoff_last(double C_prime, tipcell_velocity velocity,
                                   const tipcell_front *front, const tipcell_history *history) {
     const int n = history->count;
-    const double *t = history->t, *ell = history->ell;
+    const double *t = history->t;
     if (n <= 2)
         return ilsai_tipcell_leakoff(C_prime, front, history);
-    const double varied = variation(velocity, history);
-    const double constant = varied < 1 ? constant_leakoff(C_prime, front, history, t[n - 1]) -
-                                             constant_leakoff(C_prime, front, history, t[n - 2])
-                                       : 0;
-    const double path = varied > 0 ? ilsai_tipcell_leakoff_path(C_prime, front, n, t, ell) -
-                                         ilsai_tipcell_leakoff_path(C_prime, front, n - 1, t, ell)
-                                   : 0;
-    return blend(varied, constant, path);
+    if (velocity == TIPCELL_CONSTANT)
+        return constant_leakoff(C_prime, front, history, t[n - 1]) -
+               constant_leakoff(C_prime, front, history, t[n - 2]);
+    return ilsai_tipcell_leakoff(C_prime, front, history) -
+           ilsai_tipcell_leakoff_path(C_prime, front, n - 1, t, history->ell);
 }
 
 double ilsai_tipcell_full_leakoff(double C_prime, double age, double spread) {

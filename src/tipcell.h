@@ -64,28 +64,21 @@ void ilsai_tipcell_record(tipcell_history *history, double t, double ell);
 
 /*
  * Fluid leaked from the cell until the time of the last knot, >= 0, length^3 (minus (4.24)):
- * 2 C' times the integral of (t - t_0)^(1/2) over the wet part. The velocity counts as constant,
- * (4.21) and (4.23), where it has changed by less than 20 % since the front entered the cell (first
- * against last segment of the history); beyond that the history is used, (4.20) and (4.22). From 15
- * to 25 % the one passes into the other: a jump would keep the iteration on the front from
- * converging.
+ * 2 C' times the integral of (t - t_0)^(1/2) over the wet part, by the path of the front, (4.20)
+ * and (4.22).
  */
 double ilsai_tipcell_leakoff(double C_prime, const tipcell_front *front,
                              const tipcell_history *history);
 
-/* Which velocity counts: as the change of it decides, or one of the two whatever it does. */
-typedef enum tipcell_velocity {
-    TIPCELL_BY_CHANGE,
-    TIPCELL_HISTORY,
-    TIPCELL_CONSTANT
-} tipcell_velocity;
+/* Whether the path counts, or its ends alone as (4.21) and (4.23) have it: to compare with. */
+typedef enum tipcell_velocity { TIPCELL_HISTORY, TIPCELL_CONSTANT } tipcell_velocity;
 
 /* The part of it that has leaked since the last knot but one, by one and the same formula. */
 double ilsai_tipcell_leakoff_last(double C_prime, tipcell_velocity velocity,
                                   const tipcell_front *front, const tipcell_history *history);
 
 /*
- * The same for a path of any number of knots, without the choice: the front moves linearly from
+ * The same for a path of any number of knots: the front moves linearly from
  * (t[k], ell[k]) to (t[k + 1], ell[k + 1]) and the last knot is the present. front->ell plays no
  * part. Exact for the path given, so that one segment is (4.21) and (4.23).
  */

@@ -165,13 +165,13 @@ static ilsa_summary into_barrier(tipcell_velocity velocity, int parts) {
 }
 
 /*
- * Strong leak-off into a barrier: the choice between the history of the velocity and a constant one
- * against the history with an eighth of the steps, and what the choice is worth.
+ * Strong leak-off into a barrier: against an eighth of the steps, and what the history of the
+ * velocity is worth.
  */
 static void velocity_changes(void **unused) {
     (void)unused;
     const ilsa_summary small = into_barrier(TIPCELL_HISTORY, 8);
-    const ilsa_summary usual = into_barrier(TIPCELL_BY_CHANGE, 1);
+    const ilsa_summary usual = into_barrier(TIPCELL_HISTORY, 1);
     const ilsa_summary constant = into_barrier(TIPCELL_CONSTANT, 1);
     const double off = usual.volume_leaked / small.volume_leaked - 1;
     const double far = constant.volume_leaked / small.volume_leaked - 1;

@@ -240,19 +240,14 @@ static double leakoff_knots(const csv_table *table, size_t i, double now, int co
     return leakoff;
 }
 
-/* Leak-off along a recorded history of equal time steps: as the library chooses, or always (4.20).
- */
-static double leakoff_recorded(const csv_table *table, size_t i, double now, int steps,
-                               int choose) {
+/* Leak-off along a recorded history of equal time steps. */
+static double leakoff_recorded(const csv_table *table, size_t i, double now, int steps) {
     const tipcell_front front = read_front(table, i);
-    const double C_prime = csv_get(table, i, "C_p");
     tipcell_history history;
     ilsai_tipcell_enter(&history, 0.0);
     for (int k = 1; k <= steps; k++)
         ilsai_tipcell_record(&history, now * k / steps, history_ell(table, i, now * k / steps));
-    if (choose)
-        return ilsai_tipcell_leakoff(C_prime, &front, &history);
-    return ilsai_tipcell_leakoff_path(C_prime, &front, history.count, history.t, history.ell);
+    return ilsai_tipcell_leakoff(csv_get(table, i, "C_p"), &front, &history);
 }
 
 static void test_leakoff_constant_velocity(void **state) {
@@ -264,12 +259,12 @@ static void test_leakoff_constant_velocity(void **state) {
         if (csv_get(table, i, "history") != 0.0)
             continue;
         const double t = csv_get(table, i, "t_minus_tA"), before = t - csv_get(table, i, "Dt");
-        const double L = leakoff_recorded(table, i, t, 1, 1);
-        const double L_before = before > 0.0 ? leakoff_recorded(table, i, before, 1, 1) : 0.0;
+        const double L = leakoff_recorded(table, i, t, 1);
+        const double L_before = before > 0.0 ? leakoff_recorded(table, i, before, 1) : 0.0;
         const double cell = csv_get(table, i, "dx") * csv_get(table, i, "dy");
         worst = larger(worst, relative(L, -csv_get(table, i, "L_t")));
-        worst = larger(worst,
-                       relative(leakoff_recorded(table, i, t, 40, 1), -csv_get(table, i, "L_t")));
+        worst =
+            larger(worst, relative(leakoff_recorded(table, i, t, 40), -csv_get(table, i, "L_t")));
         worst = larger(worst, relative(L_before, -csv_get(table, i, "L_t_minus_Dt")));
         worst_S = larger(worst_S, relative((L_before - L) / cell, csv_get(table, i, "S")));
         rows++;
@@ -303,12 +298,12 @@ static void test_leakoff_fine_history(void **state) {
 }
 
 /* What a solver gets that recorded the front at so many equal steps since it entered the cell. */
-static double worst_recorded(const csv_table *table, int steps, int choose) {
+static double worst_recorded(const csv_table *table, int steps) {
     double worst = 0.0;
     for (size_t i = 0; i < csv_rows(table); i++) {
         const double now = csv_get(table, i, "t_minus_tA");
-        worst = larger(worst, relative(leakoff_recorded(table, i, now, steps, choose),
-                                       -csv_get(table, i, "L_t")));
+        worst = larger(worst,
+                       relative(leakoff_recorded(table, i, now, steps), -csv_get(table, i, "L_t")));
     }
     return worst;
 }
@@ -317,15 +312,13 @@ static void test_leakoff_recorded_history(void **state) {
     (void)state;
     csv_table *table = csv_read("tests/data/tip_cell_leakoff.csv");
     const int steps[4] = {1, 3, TIPCELL_KNOTS - 1, 200};
-    const double bound[4] = {0.4, 0.1, 0.03, 0.03}, bound_history[4] = {0.4, 0.1, 0.02, 0.02};
+    const double bound[4] = {0.4, 0.1, 0.02, 0.02};
     for (int k = 0; k < 4; k++) {
-        const double chosen = worst_recorded(table, steps[k], 1);
-        const double always = worst_recorded(table, steps[k], 0);
+        const double worst = worst_recorded(table, steps[k]);
         print_message("tip_cell_leakoff.csv, worst L of a path recorded in %d steps (at most 16 "
-                      "knots): %.2g, without the choice of constant velocity %.2g\n",
-                      steps[k], chosen, always);
-        assert_below(chosen, bound[k]);
-        assert_below(always, bound_history[k]);
+                      "knots): %.2g\n",
+                      steps[k], worst);
+        assert_below(worst, bound[k]);
     }
     csv_free(table);
 }
@@ -399,50 +392,6 @@ static void test_history_thinning(void **state) {
     assert_int_equal(corner, 1);
 }
 
-/* Leak-off with the velocity at the end `last` times that at the start; the two it is chosen from.
- */
-static double leakoff_for(double last, double *straight, double *bent) {
-    const tipcell_front front = {0.9, 0.8, 0.6, 1.0, 1.0};
-    tipcell_history history;
-    ilsai_tipcell_enter(&history, 0.0);
-    ilsai_tipcell_record(&history, 0.5, 0.5);
-    ilsai_tipcell_record(&history, 0.9, 0.5 + 0.4 * last);
-    const double end[2] = {0.0, history.ell[2]}, time[2] = {0.0, 0.9};
-    *straight = ilsai_tipcell_leakoff_path(1.0, &front, 2, time, end);
-    *bent = ilsai_tipcell_leakoff_path(1.0, &front, 3, history.t, history.ell);
-    return ilsai_tipcell_leakoff(1.0, &front, &history);
-}
-
-/* The choice between (4.20) and (4.21): constant velocity below 15 %, the history above 25 %. */
-static void test_velocity_switch(void **state) {
-    (void)state;
-    for (int i = 0; i < 6; i++) {
-        const double last = (const double[]){0.74, 0.8, 0.86, 1.14, 1.2, 1.26}[i];
-        double straight, bent, chosen = leakoff_for(last, &straight, &bent);
-        print_message("velocity changes to %.2f: constant velocity instead of the history %+.2g\n",
-                      last, straight / bent - 1.0);
-        if (i == 2 || i == 3) {
-            assert_true(chosen == straight && chosen != bent);
-        } else if (i == 0 || i == 5) {
-            assert_true(chosen == bent && chosen != straight);
-        } else {
-            assert_below(relative(chosen, 0.5 * (straight + bent)), 1e-12);
-        }
-    }
-}
-
-/* The choice has no jump, which the iteration on the front could not get across. */
-static void test_velocity_switch_is_continuous(void **state) {
-    (void)state;
-    double a, b, before = leakoff_for(0.5, &a, &b), largest = 0.0;
-    for (int k = 1; k <= 1000; k++) {
-        const double now = leakoff_for(0.5 + 0.001 * k, &a, &b);
-        largest = fmax(largest, fabs(now - before));
-        before = now;
-    }
-    assert_below(largest, 0.002 * before);
-}
-
 /* The front enters a cell at speed 1 and slows down to a quarter of it: where it is. */
 static double slowed(double t) {
     return 0.25 * t + 0.375 * (1 - exp(-2 * t));
@@ -463,19 +412,16 @@ static double leaked_in_steps(tipcell_velocity velocity, int steps) {
 }
 
 /*
- * As into a barrier: with the history, and so with the choice, steps eight times longer make little
- * difference; the shares of a constant velocity add up to another volume.
+ * As into a barrier: with the history, steps eight times longer make little difference; the shares
+ * of a constant velocity add up to another volume.
  */
 static void test_steps_of_a_front_that_slows(void **state) {
     (void)state;
     const double fine = leaked_in_steps(TIPCELL_HISTORY, 64);
     const double history = leaked_in_steps(TIPCELL_HISTORY, 8) / fine - 1;
-    const double chosen = leaked_in_steps(TIPCELL_BY_CHANGE, 8) / fine - 1;
     const double constant = leaked_in_steps(TIPCELL_CONSTANT, 8) / fine - 1;
-    print_message("slowed to 1/4: history %+.1e, choice %+.1e, constant velocity %+.1e\n", history,
-                  chosen, constant);
+    print_message("slowed to 1/4: history %+.1e, constant velocity %+.1e\n", history, constant);
     assert_below(fabs(history), 0.006);
-    assert_below(fabs(chosen), 0.006);
     assert_true(fabs(constant) > 0.05);
 }
 
@@ -542,8 +488,6 @@ int main(void) {
         cmocka_unit_test(test_leakoff_path),
         cmocka_unit_test(test_history_entry),
         cmocka_unit_test(test_history_thinning),
-        cmocka_unit_test(test_velocity_switch),
-        cmocka_unit_test(test_velocity_switch_is_continuous),
         cmocka_unit_test(test_steps_of_a_front_that_slows),
         cmocka_unit_test(full_cells_leak_their_mean),
         cmocka_unit_test(full_cells_without_spread),
