@@ -49,10 +49,12 @@ static host_scene rich_scene(void) {
 
 /* Volume */
 
-/* A step of dt or half of it or a quarter, as a host tries; returns what was accepted. */
+/* A step of dt or half of it or a quarter, as a host tries; returns what was accepted. After a
+ * shut-in with strong leak-off the cells at the front are about to close, and only short steps are
+ * left. */
 static double step_or_less(ilsa_solver *solver, double dt) {
     ilsa_status status = ilsa_step(solver, dt, NULL);
-    for (int k = 0; k < 10 && status > 0; k++) {
+    for (int k = 0; k < 16 && status > 0; k++) {
         dt *= 0.5;
         status = ilsa_step(solver, dt, NULL);
     }
