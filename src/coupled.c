@@ -112,7 +112,7 @@ void ilsai_coupled_pressure(coupled *c, const coupled_problem *problem, coupled_
 /* rhs = -(w - w_old - dt A(w) p - S), (4.4). */
 static void set_rhs(coupled *c, const coupled_problem *problem) {
     const active *a = &c->cells;
-    ilsai_flow_set(&c->fluid, a, problem->g, problem->width, problem->pressure,
+    ilsai_flow_set(&c->fluid, a, problem->g, problem->width, problem->width_old, problem->pressure,
                    problem->dt / problem->mu_prime);
     ilsai_flow_gain(&c->fluid, a, problem->pressure, c->rhs);
     for (int k = 0; k < a->count; k++) {

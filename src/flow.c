@@ -24,7 +24,7 @@ void ilsai_flow_destroy(flow *f) {
 }
 
 void ilsai_flow_set(flow *f, const active *a, const grid *g, const double *width,
-                    const double *pressure, double dt_over_mu_prime) {
+                    const double *width_old, const double *pressure, double dt_over_mu_prime) {
     const double scale[GRID_FACES] = {
         dt_over_mu_prime / (g->dx * g->dx), dt_over_mu_prime / (g->dx * g->dx),
         dt_over_mu_prime / (g->dy * g->dy), dt_over_mu_prime / (g->dy * g->dy)};
@@ -35,8 +35,10 @@ void ilsai_flow_set(flow *f, const active *a, const grid *g, const double *width
             if (other >= 0) {
                 int here = a->cell[k], there = a->cell[other];
                 double w = 0.5 * (width[here] + width[there]);
-                f->conductance[at] = scale[face] * w * w * w;
-                f->slope[at] = scale[face] * 1.5 * w * w * (pressure[there] - pressure[here]);
+                double mean = 0.5 * w + 0.25 * (width_old[here] + width_old[there]);
+                f->conductance[at] = scale[face] * mean * w * w;
+                f->slope[at] =
+                    scale[face] * w * (mean + 0.25 * w) * (pressure[there] - pressure[here]);
             }
         }
     }

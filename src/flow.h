@@ -14,9 +14,15 @@ typedef struct flow {
 ilsa_status ilsai_flow_reserve(flow *f, int count);
 void ilsai_flow_destroy(flow *f);
 
-/* Sets both from widths and pressures over the mesh. */
+/*
+ * Sets both from widths, those at the start of the step, and pressures over the mesh. Of the three
+ * factors of w^3 one is the mean over the step. Where the front moves on, the flux V w through a
+ * face grows with the width during the step and its mean is V w_mean, while the pressure gradient
+ * at the end is mu' V / w^2: with w^3 the flux would be too large beside the front by the same part
+ * on any mesh.
+ */
 void ilsai_flow_set(flow *f, const active *a, const grid *g, const double *width,
-                    const double *pressure, double dt_over_mu_prime);
+                    const double *width_old, const double *pressure, double dt_over_mu_prime);
 
 /* gain[k] = dt [A(w) p] of active cell k, for the conductances as they are set. */
 void ilsai_flow_gain(const flow *f, const active *a, const double *pressure, double *gain);

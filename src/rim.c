@@ -368,10 +368,18 @@ static tip_response response_in(ilsa_solver *s, const front_cell *c, double dt, 
     return r;
 }
 
-/* The self term of a survey cell changes as the front moves away from it. */
+/*
+ * The self term of a survey cell changes as the front moves away from it: nearly all of it where
+ * toughness rules and the cell has just filled. Newton's matrix has to keep the most of it.
+ */
 static tip_response response_of_seed(const ilsa_solver *s, const front_seed *seed) {
     tip_response r = {.cell = seed->cell};
-    answer a = {0, 0, edge_of_seed(s, seed).slope * s->trial.width[seed->cell]};
+    double self = s->material.E_prime * ilsai_kernel(0, 0, s->g.dx, s->g.dy);
+    double slope = edge_of_seed(s, seed).slope * s->trial.width[seed->cell];
+    answer a = {.pressure = fmax(slope * seed->ds_dw, -ILSAI_EDGE_GIVES * self)};
+    if (seed->ds_dw > 0) {
+        a.pressure /= seed->ds_dw;
+    }
     answer_to_seed(&r, seed, &a, 1);
     return r;
 }

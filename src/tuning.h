@@ -30,6 +30,9 @@
  * that turns from tip to channel and back leaves no front that meets it. */
 #define ILSAI_SETTLE_PASS 16
 #define ILSAI_SETTLE      5e-3
+/* Front: the most that the front's move takes away from a self term in Newton's matrix, as a part.
+ */
+#define ILSAI_EDGE_GIVES 0.1
 /* Front: step of the differences that tell how a cell at the front answers, in cells. */
 #define ILSAI_DIFFERENCE 1e-5
 /* Front: passes before a step is given up, and the memory of the Anderson acceleration. */

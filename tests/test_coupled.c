@@ -175,7 +175,8 @@ static double residual_at(const scene *s, const double *width, const double *pre
             continue;
         }
         double edge = 0.5 * (width[cell] + width[other]), h = n < 2 ? s->g.dx : s->g.dy;
-        sum += edge * edge * edge * (pressure[other] - pressure[cell]) / (s->mu_prime * h * h);
+        double mean = 0.5 * edge + 0.25 * (s->width_old[cell] + s->width_old[other]);
+        sum += mean * edge * edge * (pressure[other] - pressure[cell]) / (s->mu_prime * h * h);
     }
     return width[cell] - s->width_old[cell] - s->dt * sum - s->gain[cell];
 }
@@ -243,7 +244,7 @@ static void make_matrix(scene *s, matrix *at) {
     assert_int_equal(ilsai_active_create(&at->a, &def), ILSA_OK);
     assert_int_equal(ilsai_active_set(&at->a, &s->g, b, s->kind), ILSA_OK);
     assert_int_equal(ilsai_flow_reserve(&at->f, at->a.count), ILSA_OK);
-    ilsai_flow_set(&at->f, &at->a, &s->g, s->width, s->pressure, s->dt / s->mu_prime);
+    ilsai_flow_set(&at->f, &at->a, &s->g, s->width, s->width_old, s->pressure, s->dt / s->mu_prime);
     assert_int_equal(ilsai_elasticity_set_box(s->e, b->x1 - b->x0 + 1, b->y1 - b->y0 + 1), ILSA_OK);
     at->m = (jacobian){.g = &s->g, .a = &at->a, .f = &at->f, .e = s->e};
     at->m.width = zeros(s->cells);

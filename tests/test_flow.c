@@ -41,7 +41,7 @@ typedef struct scene {
     grid g;
     box footprint;
     unsigned char *kind;
-    double *width, *pressure, *gain;
+    double *width, *width_old, *pressure, *gain;
     active a;
     flow f;
 } scene;
@@ -51,6 +51,7 @@ static scene make_scene(int nx, int ny, int mirror_x, int mirror_y) {
     size_t cells = (size_t)nx * (size_t)ny;
     scene s = {.g = ilsai_grid(&def, mirror_x, mirror_y), .kind = calloc(cells, 1)};
     s.width = calloc(cells, sizeof(double));
+    s.width_old = calloc(cells, sizeof(double));
     s.pressure = calloc(cells, sizeof(double));
     s.gain = calloc(cells, sizeof(double));
     if (!s.kind || !s.width || !s.pressure || !s.gain) {
@@ -64,6 +65,7 @@ static scene make_scene(int nx, int ny, int mirror_x, int mirror_y) {
 static void free_scene(scene *s) {
     free(s->kind);
     free(s->width);
+    free(s->width_old);
     free(s->pressure);
     free(s->gain);
     ilsai_active_destroy(&s->a);
@@ -104,13 +106,14 @@ static void fill(scene *s, int mirror, uint64_t salt) {
     }
 }
 
-/* Lists the active cells, sets the operator; gain over the mesh. */
+/* Lists the active cells, sets the operator for widths that stay; gain over the mesh. */
 static void work_out(scene *s) {
     double gain[4000];
+    memcpy(s->width_old, s->width, (size_t)cell_count(s) * sizeof *s->width);
     assert_int_equal(ilsai_active_set(&s->a, &s->g, &s->footprint, s->kind), ILSA_OK);
     assert_true(s->a.count < 4000);
     assert_int_equal(ilsai_flow_reserve(&s->f, s->a.count), ILSA_OK);
-    ilsai_flow_set(&s->f, &s->a, &s->g, s->width, s->pressure, dt_over_mu);
+    ilsai_flow_set(&s->f, &s->a, &s->g, s->width, s->width_old, s->pressure, dt_over_mu);
     ilsai_flow_gain(&s->f, &s->a, s->pressure, gain);
     for (int k = 0; k < s->a.count; k++) {
         s->gain[s->a.cell[k]] = gain[k];
@@ -322,9 +325,31 @@ static void edge_width_is_the_mean(void **state) {
     free_scene(&s);
 }
 
+/* Of the three factors of the width one is the mean over the step, from dry on. */
+static void one_factor_is_the_mean_over_the_step(void **state) {
+    (void)state;
+    scene s = make_scene(5, 5, 0, 0);
+    s.kind[12] = s.kind[13] = ILSA_CELL_CHANNEL;
+    s.width[12] = 0.8;
+    s.width[13] = 0.6;
+    s.pressure[12] = 2;
+    s.pressure[13] = 1;
+    work_out(&s);
+    double before = s.f.conductance[GRID_FACES * s.a.slot[12] + GRID_RIGHT];
+    for (int dry = 0; dry < 2; dry++) {
+        s.width_old[12] = 0.4;
+        s.width_old[13] = dry ? 0 : 0.2;
+        ilsai_flow_set(&s.f, &s.a, &s.g, s.width, s.width_old, s.pressure, dt_over_mu);
+        double now = s.f.conductance[GRID_FACES * s.a.slot[12] + GRID_RIGHT];
+        double mean = 0.5 * (0.7 + 0.5 * (0.4 + s.width_old[13]));
+        assert_true(fabs(now / before - mean / 0.7) < 1e-15);
+    }
+    free_scene(&s);
+}
+
 /* Gain of one face as the operator has it. */
 static double face_gain(scene *s, int at) {
-    ilsai_flow_set(&s->f, &s->a, &s->g, s->width, s->pressure, dt_over_mu);
+    ilsai_flow_set(&s->f, &s->a, &s->g, s->width, s->width_old, s->pressure, dt_over_mu);
     int here = s->a.cell[at / GRID_FACES], there = s->a.cell[s->a.neighbour[at]];
     return s->f.conductance[at] * (s->pressure[there] - s->pressure[here]);
 }
@@ -430,6 +455,7 @@ int main(void) {
         cmocka_unit_test(even_pressure_moves_nothing),
         cmocka_unit_test(uniform_width_gives_the_analytic_flux),
         cmocka_unit_test(edge_width_is_the_mean),
+        cmocka_unit_test(one_factor_is_the_mean_over_the_step),
         cmocka_unit_test(slope_is_the_derivative),
         cmocka_unit_test(folded_gain_is_the_unfolded_one),
         cmocka_unit_test(no_memory_is_reported),
