@@ -62,7 +62,7 @@ speed_scene speed_scene_of(int which) {
     case SPEED_M_TILDE:
         return radial("radial m-tilde", (penny_law){"", 1, 0, 1}, 100);
     case SPEED_MIDDLE:
-        return radial("radial, middle", (penny_law){"", 1, 1, 0.1}, 1);
+        return radial("radial middle", (penny_law){"", 1, 1, 0.1}, 1);
     case SPEED_SYMMETRIC:
         return layered("symmetric", &layer_scenes[1]);
     case SPEED_ASYMMETRIC:
