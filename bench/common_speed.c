@@ -1,5 +1,3 @@
-#define _POSIX_C_SOURCE 200809L
-
 #include "common_speed.h"
 
 #include "common_layers.h"

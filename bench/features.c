@@ -10,7 +10,7 @@
 #include <math.h>
 #include <stdio.h>
 
-enum { CELLS = 38, WARM = 4, STEPS = 8, REPEATS = 5 };
+enum { CELLS = 38, WARM = 4, STEPS = 8, REPEATS = 15 };
 
 /* What the host does after every step. */
 typedef enum reading { READS_NOTHING, SAVES, READS_FIELDS } reading;

@@ -5,8 +5,6 @@
  *
  *     OPENBLAS_NUM_THREADS=1 bench_profile [STEPS]      steps measured, default 6, after 8
  */
-#define _POSIX_C_SOURCE 200809L
-
 #include "common_malloc.h"
 #include "common_speed.h"
 
@@ -65,8 +63,7 @@ static void run(row *r, int unknowns, ilsa_symmetry symmetry, int steps) {
     const size_t before = heap.live;
     how.symmetry = symmetry;
     const int cells = (int)round(sqrt(unknowns / 3.1416));
-    scene.start = scene.length;
-    scene.half_x = scene.half_y = 1 + 0.5 * (WARM + steps) / cells;
+    scene.start = scene.length * (1 - 0.5 * (WARM + 0.5 * steps) / cells);
     ilsa_solver *solver = speed_start(&scene, cells, &how);
     if (!solver || ilsa_get_mesh_def(solver, &mesh))
         return;

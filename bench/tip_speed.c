@@ -1,6 +1,4 @@
 /* Time per call of the tip functions, over random arguments of all regimes. */
-#define _POSIX_C_SOURCE 199309L
-
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
