@@ -153,9 +153,11 @@ TESTS_WITH := $(filter-out tests/test_% tests/long_%,$(wildcard tests/*.c))
 BENCH_WITH := $(wildcard bench/common*.c)
 BENCH      := $(call names,$(filter-out $(BENCH_WITH),$(wildcard bench/*.c)))
 
-# `make accuracy` runs bench/accuracy*.c, nobody bench/long_*.c, `make bench` the others.
+# `make accuracy` runs bench/accuracy*.c, `make speed` those of BENCH_SPEED, nobody bench/long_*.c,
+# `make bench` the others.
 BENCH_ACCURACY := $(filter accuracy%,$(BENCH))
-BENCH_QUICK    := $(filter-out accuracy% long_%,$(BENCH))
+BENCH_SPEED    := $(filter speed profile tradeoff features,$(BENCH))
+BENCH_QUICK    := $(filter-out accuracy% long_% $(BENCH_SPEED),$(BENCH))
 
 PROGRAMS = $(EXAMPLES:%=$(BIN)/%) $(if $(and $(RUN),$(INIH_PC)),$(BIN)/ilsa-run)
 
@@ -285,12 +287,15 @@ coverage: ## the lines and branches of src/ that the tests reach
 	    | awk -f tests/coverage.awk
 
 # ---- Programs that measure and draw -------------------------------------------------------------
-.PHONY: bench accuracy demo figures paper-figures
+.PHONY: bench accuracy speed demo figures paper-figures
 bench: $(BENCH_PROGRAMS) ## the quick programs of bench/
 	@set -e; for b in $(BENCH_QUICK); do echo "== bench_$$b"; $(BIN)/bench_$$b; done
 
 accuracy: $(BENCH_ACCURACY:%=$(BIN)/bench_%) ## the tables of bench/accuracy*.c
 	@set -e; for b in $(BENCH_ACCURACY); do echo "== bench_$$b"; $(BIN)/bench_$$b; done
+
+speed: $(BENCH_SPEED:%=$(BIN)/bench_%) ## the tables of docs/speed.md, in a quarter of an hour
+	@set -e; for b in $(BENCH_SPEED); do echo "== bench_$$b"; $(BIN)/bench_$$b; done
 
 DEMO = symmetric_phi1e-2
 demo: $(BIN)/ilsa-run ## the paper's three-layer fracture to 3600 s, and its figures, in out/demo

@@ -100,9 +100,9 @@
 /* Levels 1 .. 5: advance of the front per step and tolerance of the front, both in cells. */
 #define ILSAI_LEVELS 5
 #define ILSAI_LEVEL_STEP                                                                           \
-    { 1.0, 0.75, 0.5, 0.35, 0.25 }
+    { 0.75, 0.6, 0.5, 0.25, 0.1 }
 #define ILSAI_LEVEL_TOLERANCE                                                                      \
-    { 1e-2, 3e-3, 1e-3, 3e-4, 1e-5 }
+    { 3e-2, 5e-3, 1e-3, 1e-4, 1e-5 }
 /* Smallest tolerance of the front, in cells: rounding of a distance. */
 #define ILSAI_TOLERANCE_LEAST 1e-12
 /* Tolerance of the widths relative to that of the front: w changes half as much as s. */

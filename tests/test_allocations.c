@@ -1,0 +1,103 @@
+/* Memory that steps ask for: none once the footprint's buffers are there, little while they grow.
+ */
+#include "../bench/common_malloc.h"
+#include "host.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+enum { STEPS = 100, GROWING = 40 };
+
+typedef struct growth_case {
+    double phi;
+    ilsa_symmetry symmetry;
+} growth_case;
+
+static const growth_case cases[] = {{0, ILSA_SYMMETRY_AUTO},
+                                    {0, ILSA_SYMMETRY_NONE},
+                                    {1e-2, ILSA_SYMMETRY_AUTO},
+                                    {1e-2, ILSA_SYMMETRY_NONE}};
+enum { CASES = sizeof cases / sizeof *cases };
+
+static ilsa_solver *started(const growth_case *c) {
+    host_scene scene = host_penny(c->phi, 81, 0.05);
+    scene.options.symmetry = c->symmetry;
+    return host_started(&scene, 0.5);
+}
+
+/* In steps so short that the footprint's box stays; everybody's allocations count. */
+static long allocations_at_rest(const growth_case *c) {
+    ilsa_solver *solver = started(c);
+    double dt = 0;
+    host_steps(solver, GROWING);
+    assert_int_equal(ilsa_suggest_dt(solver, &dt), ILSA_OK);
+    const ilsa_summary before = host_summary(solver);
+    const long calls = heap.calls;
+    for (int k = 0; k < STEPS; k++)
+        host_step(solver, dt / 400);
+    const long made = heap.calls - calls;
+    assert_true(host_summary(solver).x_max > before.x_max);
+    ilsa_solver_destroy(&solver);
+    return made;
+}
+
+static void none_in_a_grown_footprint(void **unused) {
+    (void)unused;
+    for (int k = 0; k < CASES; k++) {
+        if (cases[k].phi == 0)
+            assert_int_equal(allocations_at_rest(&cases[k]), 0);
+    }
+}
+
+/* The C library may take memory to sort the tip cells' paths, once a step and given back at once.
+ */
+static void one_at_most_with_leak_off(void **unused) {
+    (void)unused;
+    for (int k = 0; k < CASES; k++) {
+        if (cases[k].phi > 0)
+            assert_true(allocations_at_rest(&cases[k]) <= STEPS);
+    }
+}
+
+/* From 10 to over 20 cells: all that was asked for is a few times what is there at the end. */
+static void growth_is_amortised(void **unused) {
+    (void)unused;
+    for (int k = 0; k < CASES; k++) {
+        ilsa_solver *solver = started(&cases[k]);
+        const heap_counts before = heap;
+        host_steps(solver, GROWING);
+        assert_true(host_summary(solver).x_max > 1);
+        assert_true(heap.bytes - before.bytes <= 5 * (heap.live - before.live));
+        ilsa_solver_destroy(&solver);
+    }
+}
+
+/* What a solver has taken is given back with it. */
+static void nothing_is_kept(void **unused) {
+    (void)unused;
+    ilsa_solver *solver = started(&cases[3]);
+    host_steps(solver, 3);
+    ilsa_solver_destroy(&solver); /* what FFTW keeps for all plans is there now */
+    const size_t live = heap.live;
+    solver = started(&cases[3]);
+    host_steps(solver, 3);
+#ifdef COUNTS_HEAP
+    assert_true(heap.live > live);
+#endif
+    ilsa_solver_destroy(&solver);
+    assert_true(heap.live <= live);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(none_in_a_grown_footprint),
+        cmocka_unit_test(one_at_most_with_leak_off),
+        cmocka_unit_test(growth_is_amortised),
+        cmocka_unit_test(nothing_is_kept),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
