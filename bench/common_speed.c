@@ -76,11 +76,12 @@ speed_scene speed_scene_of(int which) {
 static double in_disc(double x, double y, double dx) {
     enum { POINTS = 8 };
     int inside = 0;
-    for (int k = 0; k < POINTS * POINTS; k++) {
-        const double u = x + dx * ((k % POINTS + 0.5) / POINTS - 0.5);
-        const double v = fabs(y + dx * ((k / POINTS + 0.5) / POINTS - 0.5));
-        inside += hypot(u, v - disc_centre) < disc_radius;
-    }
+    for (int j = 0; j < POINTS; j++)
+        for (int i = 0; i < POINTS; i++) {
+            const double u = x + dx * ((i + 0.5) / POINTS - 0.5);
+            const double v = fabs(y + dx * ((j + 0.5) / POINTS - 0.5));
+            inside += hypot(u, v - disc_centre) < disc_radius;
+        }
     return inside / (double)(POINTS * POINTS);
 }
 
@@ -90,8 +91,9 @@ static ilsa_status set_discs(ilsa_stress *stress, const ilsa_mesh *mesh) {
     ilsa_status status = ilsa_mesh_get_def(mesh, &m);
     double *sigma = malloc((size_t)m.nx * (size_t)m.ny * sizeof *sigma);
     for (int n = 0; sigma && n < m.nx * m.ny; n++) {
-        const double x = fabs(n % m.nx - 0.5 * (m.nx - 1)) * m.dx;
-        const double y = fabs(n / m.nx - 0.5 * (m.ny - 1)) * m.dy;
+        const int i = n % m.nx, j = n / m.nx;
+        const double x = fabs(i - 0.5 * (m.nx - 1)) * m.dx;
+        const double y = fabs(j - 0.5 * (m.ny - 1)) * m.dy;
         sigma[n] = rock_stress + in_disc(x, y, m.dx) * (disc_stress - rock_stress);
     }
     status = status ? status : sigma ? ILSA_OK : ILSA_ERR_MEMORY;

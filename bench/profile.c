@@ -3,7 +3,7 @@
  * memory. A radial fracture in the middle of the triangle, solved whole and as a quarter; each row
  * runs in a process of its own, so that its peak of memory is its own.
  *
- *     OPENBLAS_NUM_THREADS=1 bench_profile [STEPS]      steps measured, default 6, after 8
+ *     OPENBLAS_NUM_THREADS=1 bench_profile [STEPS]      steps measured, 1 .. 20, default 6, after 8
  */
 #include "common_malloc.h"
 #include "common_speed.h"
@@ -168,7 +168,8 @@ static void print_million(void) {
 }
 
 int main(int argc, char **argv) {
-    const int steps = argc > 1 ? atoi(argv[1]) : 6;
+    const long asked = argc > 1 ? strtol(argv[1], NULL, 10) : 0;
+    const int steps = asked > 0 && asked <= 20 ? (int)asked : 6;
     speed_one_thread();
     print_tables("No symmetry", ILSA_SYMMETRY_NONE, steps);
     print_tables("Quarter", ILSA_SYMMETRY_AUTO, steps);

@@ -216,7 +216,7 @@ static void print_size(int size) {
 int main(int argc, char **argv) {
     speed_one_thread();
     for (int size = 0; size < SIZES; size++)
-        if (argc < 2 || atoi(argv[1]) == size)
+        if (argc < 2 || strtol(argv[1], NULL, 10) == size)
             print_size(size);
     return 0;
 }

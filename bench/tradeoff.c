@@ -12,7 +12,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { LEVELS = 5, MESHES = 3, SCENES = 5, RUNS = SCENES * MESHES * LEVELS };
+enum { LEVELS = 5, MESHES = 3, SCENES = 5, PER_SCENE = MESHES * LEVELS, RUNS = SCENES * PER_SCENE };
 static const int which[SCENES] = {SPEED_M, SPEED_K, SPEED_M_TILDE, SPEED_MIDDLE, SPEED_SYMMETRIC};
 static const int radial_cells[MESHES] = {10, 20, 40}, layer_cells[MESHES] = {11, 21, 31};
 static const double layer_time = 900;
@@ -121,9 +121,9 @@ static int beaten(const run *a, const run *by) {
 
 /* Of all meshes and levels of its scene. */
 static int on_pareto_front(const run *r) {
-    const run *of = &runs[(r - runs) / (MESHES * LEVELS) * (MESHES * LEVELS)];
+    const run *of = run_at((int)((r - runs) / PER_SCENE), 0, 0);
     int on = 1;
-    for (int k = 0; k < MESHES * LEVELS; k++)
+    for (int k = 0; k < PER_SCENE; k++)
         on &= !beaten(r, &of[k]);
     return on;
 }
