@@ -151,24 +151,6 @@ ilsa_solver *speed_start(const speed_scene *scene, int cells, const ilsa_solver_
     return solver;
 }
 
-/* Where a mirrored scene was solved in part, only the cells of that part have tip paths. */
-static ilsa_status unfold_tips(ilsa_solver *s) {
-    const grid g = ilsai_grid(&s->mesh, s->now.mirror_x, s->now.mirror_y);
-    const int count = s->tips.count;
-    int image[4];
-    ilsa_status status = ilsai_tip_records_reserve(&s->tips, 4 * count);
-    for (int k = 0; k < count && status == ILSA_OK; k++) {
-        const int cell = s->tips.at[k].cell;
-        const int images = ilsai_grid_images(&g, cell % g.nx, cell / g.nx, image);
-        for (int m = 1; m < images; m++) {
-            s->tips.at[s->tips.count] = s->tips.at[k];
-            s->tips.at[s->tips.count++].cell = image[m];
-        }
-    }
-    ilsai_tip_records_sort(&s->tips);
-    return status;
-}
-
 /* An image serves solvers of its own definition: this one passes for such meanwhile. */
 ilsa_status speed_copy_state(ilsa_solver *to, const ilsa_solver *from) {
     const ilsa_solver_def own = to->def;
@@ -182,7 +164,7 @@ ilsa_status speed_copy_state(ilsa_solver *to, const ilsa_solver *from) {
     status = status ? status : ilsa_snapshot_restore(to, image, size);
     to->def = own;
     free(image);
-    return status ? status : unfold_tips(to);
+    return status;
 }
 
 double speed_clock(void) {

@@ -84,9 +84,30 @@ static int by_cell(const void *a, const void *b) {
     return (p > q) - (p < q);
 }
 
+/* Moves the record at a place down a heap of count until the larger cells are above it. */
+static void sink(tip_record *at, int place, int count) {
+    tip_record moved = at[place];
+    for (int child = 2 * place + 1; child < count; child = 2 * place + 1) {
+        child += child + 1 < count && at[child + 1].cell > at[child].cell;
+        if (at[child].cell <= moved.cell) {
+            break;
+        }
+        at[place] = at[child];
+        place = child;
+    }
+    at[place] = moved;
+}
+
+/* In place: qsort may ask for memory. */
 void ilsai_tip_records_sort(tip_records *r) {
-    if (r->count > 0) {
-        qsort(r->at, (size_t)r->count, sizeof *r->at, by_cell);
+    for (int k = r->count / 2 - 1; k >= 0; k--) {
+        sink(r->at, k, r->count);
+    }
+    for (int last = r->count - 1; last > 0; last--) {
+        tip_record largest = r->at[0];
+        r->at[0] = r->at[last];
+        r->at[last] = largest;
+        sink(r->at, 0, last);
     }
 }
 

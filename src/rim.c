@@ -290,7 +290,9 @@ ilsa_status ilsai_rim_set(ilsa_solver *s, double dt, int hold) {
     int count;
     const front_cell *cells = ilsai_front_cells(s->march, &count);
     if (reserve(s, count) != ILSA_OK ||
-        (ilsai_has_leakoff(s) && ilsai_tip_records_reserve(&s->trial_tips, count) != ILSA_OK)) {
+        (ilsai_has_leakoff(s) &&
+         ilsai_tip_records_reserve(&s->trial_tips, count << (s->g.mirror_x + s->g.mirror_y)) !=
+             ILSA_OK)) {
         return ILSA_ERR_MEMORY;
     }
     ilsa_status status = drop_unreached(s);

@@ -358,6 +358,19 @@ static void set_spreads(ilsa_solver *s, double dt) {
     }
 }
 
+/* Gives the images of the first count records the same path. */
+static void unfold_tips(const ilsa_solver *s, tip_records *tips) {
+    int image[4], count = tips->count;
+    for (int k = 0; k < count; k++) {
+        int cell = tips->at[k].cell;
+        int images = ilsai_grid_images(&s->g, cell % s->g.nx, cell / s->g.nx, image);
+        for (int m = 1; m < images; m++) {
+            tips->at[tips->count] = tips->at[k];
+            tips->at[tips->count++].cell = image[m];
+        }
+    }
+}
+
 /* Keeps the paths of the cells that are still tip cells. */
 static void keep_tips(ilsa_solver *s) {
     tip_records old = s->tips;
@@ -368,6 +381,7 @@ static void keep_tips(ilsa_solver *s) {
         }
     }
     s->trial_tips.count = kept;
+    unfold_tips(s, &s->trial_tips);
     ilsai_tip_records_sort(&s->trial_tips);
     s->tips = s->trial_tips;
     s->trial_tips = old;

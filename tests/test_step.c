@@ -474,6 +474,52 @@ static void folding_is_exact_but_for_tolerance(void **unused) {
     check_fold(scene, ILSA_SYMMETRY_XY, 1e-8);
 }
 
+/* Takes one of the three layers' stress for another in a running solver. */
+static void set_layer(ilsa_solver *solver, const host_scene *scene, int layer, double sigma) {
+    ilsa_stress_def zero = ilsa_stress_def_default();
+    ilsa_stress *stress = NULL;
+    double layers[HOST_LAYERS];
+    memcpy(layers, scene->sigma, sizeof layers);
+    layers[layer] = sigma;
+    assert_int_equal(ilsa_stress_create(&zero, &stress), ILSA_OK);
+    assert_int_equal(
+        ilsa_stress_set_layers(stress, scene->interfaces, scene->interface_y, layers), ILSA_OK);
+    assert_int_equal(ilsa_set_stress(solver, stress), ILSA_OK);
+    ilsa_stress_destroy(&stress);
+}
+
+/* What a quarter knows of its tip cells' pasts is known of their images when the host's stress
+ * takes the symmetry away. */
+static void a_quarter_unfolds(void **unused) {
+    (void)unused;
+    host_scene scene = symmetric_scene(51, 41, 1);
+    ilsa_solver *solver[2];
+    scene.options.tolerance = 1e-9;
+    for (int k = 0; k < 2; k++) {
+        scene.options.symmetry = k ? ILSA_SYMMETRY_NONE : ILSA_SYMMETRY_AUTO;
+        solver[k] = host_started(&scene, 7);
+    }
+    for (int n = 0; n < 8; n++) {
+        double dt = 0.5 * suggested(solver[0]);
+        for (int k = 0; k < 2; k++) {
+            if (n == 4)
+                set_layer(solver[k], &scene, 0, 7.25e6);
+            host_step(solver[k], dt);
+            assert_true(fabs(host_imbalance(solver[k])) <= 1e-12);
+        }
+        ilsa_model model;
+        assert_int_equal(ilsa_get_model(solver[0], &model), ILSA_OK);
+        assert_int_equal(model.symmetry, n < 4 ? ILSA_SYMMETRY_XY : ILSA_SYMMETRY_X);
+    }
+    ilsa_summary a = host_summary(solver[0]), b = host_summary(solver[1]);
+    double off = difference(host_width(solver[1]), host_width(solver[0]), cells_of(solver[1]));
+    double leaked = fabs(a.volume_leaked / b.volume_leaked - 1);
+    print_message("step: unfolded, width differs by %.1e, leaked by %.1e\n", off, leaked);
+    assert_true(off <= 1e-8 && leaked <= 1e-8);
+    for (int k = 0; k < 2; k++)
+        ilsa_solver_destroy(&solver[k]);
+}
+
 /* Units */
 
 /* Scales length, time and force. */
@@ -830,6 +876,7 @@ int main(void) {
         cmocka_unit_test(mirrored_scenes_give_mirrored_answers),
         cmocka_unit_test(folded_scenes_give_the_whole_answer),
         cmocka_unit_test(folding_is_exact_but_for_tolerance),
+        cmocka_unit_test(a_quarter_unfolds),
         cmocka_unit_test(units_that_are_powers_of_two),
         cmocka_unit_test(units_of_any_size),
         cmocka_unit_test(the_mesh_does_not_matter),
