@@ -482,8 +482,8 @@ static void set_layer(ilsa_solver *solver, const host_scene *scene, int layer, d
     memcpy(layers, scene->sigma, sizeof layers);
     layers[layer] = sigma;
     assert_int_equal(ilsa_stress_create(&zero, &stress), ILSA_OK);
-    assert_int_equal(
-        ilsa_stress_set_layers(stress, scene->interfaces, scene->interface_y, layers), ILSA_OK);
+    assert_int_equal(ilsa_stress_set_layers(stress, scene->interfaces, scene->interface_y, layers),
+                     ILSA_OK);
     assert_int_equal(ilsa_set_stress(solver, stress), ILSA_OK);
     ilsa_stress_destroy(&stress);
 }
