@@ -270,9 +270,9 @@ $(CHECKED:%=check/%): check/%: $(BIN)/% $(PROGRAMS)
 	echo $$? $$(($$(date +%s) - start)) >$(B)/log/$*.status; \
 	echo "ran $<"
 
-check-long: ## every test at full length, then the build and the tests with clang
+check-long: ## every test at full length, then the build, the tests and bench/ with clang
 	@$(MAKE) --no-print-directory check ILSA_LONG=1
-	@$(MAKE) --no-print-directory FLAVOUR=clang CC=clang all check
+	@$(MAKE) --no-print-directory FLAVOUR=clang CC=clang all benches check
 
 asan: ## the tests under AddressSanitizer and LeakSanitizer
 	@$(MAKE) --no-print-directory FLAVOUR=asan check
@@ -287,7 +287,9 @@ coverage: ## the lines and branches of src/ that the tests reach
 	    | awk -f tests/coverage.awk
 
 # ---- Programs that measure and draw -------------------------------------------------------------
-.PHONY: bench accuracy speed demo figures paper-figures
+.PHONY: benches bench accuracy speed demo figures paper-figures
+benches: $(BENCH_PROGRAMS) ## builds all of bench/
+
 bench: $(BENCH_PROGRAMS) ## the quick programs of bench/
 	@set -e; for b in $(BENCH_QUICK); do echo "== bench_$$b"; $(BIN)/bench_$$b; done
 
