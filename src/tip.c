@@ -454,8 +454,8 @@ static tip_front distance_of_toughness(const tip_law *law, double w, double s0, 
 
 /* From a distance that may be near the one sought, if it lies where one can be. */
 static double distance_guess(const distance_problem *p, double xi) {
-    const double inverse = 1.0 / xi - p->xi_rate;
-    return xi > 0.0 && inverse > 0.0 ? 1.0 / inverse : distance_start(p);
+    const double inverse = xi > 0.0 ? 1.0 / xi - p->xi_rate : 0.0;
+    return inverse > 0.0 ? 1.0 / inverse : distance_start(p);
 }
 
 tip_front ilsai_tip_distance(const tip_law *law, double w, double s0, double dt) {
