@@ -51,7 +51,7 @@ static void convergence(void) {
            "|---|---|---|---|---|---|---|---|---|---|---|---|\n");
     for (int k = 0; k < PENNY_CASES; k++) {
         double before = NAN;
-        for (double cells = 5; cells <= (is_long ? 80 : 40); cells *= 2)
+        for (int cells = 5; cells <= (is_long ? 80 : 40); cells *= 2)
             convergence_row(&penny_cases[k], cells, &before);
         fflush(stdout);
     }

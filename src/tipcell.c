@@ -77,17 +77,27 @@ static wet_nodes nodes_of(const tipcell_front *front) {
     return n;
 }
 
+/* Width and M0 at the nodes; of a front at rest those of its K_I. */
+static void row_of(const tip_law *law, double V, double K_I, const wet_nodes *n, tip_point *point) {
+    if (V > 0.0) {
+        ilsai_tip_row(law, V, n->count, n->xi, point);
+        return;
+    }
+    for (int k = 0; k < n->count; k++) {
+        point[k].w = K_I / law->E_prime * sqrt(n->xi[k]);
+        point[k].M0 = 2.0 / 3.0 * point[k].w * n->xi[k];
+    }
+}
+
 tipcell_growth ilsai_tipcell_growth(const tip_law *law, double V, double K_I,
                                     const tipcell_front *front) {
     const wet_nodes n = nodes_of(front);
     tip_point point[TIPCELL_NODES];
     tipcell_growth sum = {0.0, 0.0};
-    if (V > 0.0)
-        ilsai_tip_row(law, V, n.count, n.xi, point);
+    row_of(law, V, K_I, &n, point);
     for (int k = 0; k < n.count; k++) {
-        const double at_rest = K_I / law->E_prime * sqrt(n.xi[k]);
-        sum.volume += n.weight[k] * (V > 0.0 ? point[k].M0 : 2.0 / 3.0 * at_rest * n.xi[k]);
-        sum.by_ell += n.weight[k] * (V > 0.0 ? point[k].w : at_rest);
+        sum.volume += n.weight[k] * point[k].M0;
+        sum.by_ell += n.weight[k] * point[k].w;
     }
     return sum;
 }
