@@ -50,11 +50,13 @@ LIB     = $(if $(filter release,$(FLAVOUR)),lib,$(B)/lib)
 
 OPT_asan     = -O1 -g
 OPT_usan     = -O1 -g
+OPT_tsan     = -O2 -g
 OPT_coverage = -O0 -g
 OPT         ?= $(or $(OPT_$(FLAVOUR)),-O3)
 
 INSTRUMENT_asan     = -fsanitize=address -fno-omit-frame-pointer
 INSTRUMENT_usan     = -fsanitize=undefined,float-divide-by-zero -fno-sanitize-recover=all
+INSTRUMENT_tsan     = -fsanitize=thread
 INSTRUMENT_coverage = --coverage
 INSTRUMENT          = $(INSTRUMENT_$(FLAVOUR))
 
@@ -248,7 +250,7 @@ $(TEST_PROGRAMS): $(BIN)/%: $(B)/obj/tests/%.o $(call objects,$(TESTS_WITH) $(BE
 	$(call link,$(call pc_libs,$(CMOCKA_PC)))
 
 # ---- Tests --------------------------------------------------------------------------------------
-.PHONY: check check-long asan usan coverage
+.PHONY: check check-long asan usan tsan coverage
 T           =
 CANDIDATES := $(TESTS) $(if $(ILSA_LONG),$(TESTS_LONG))
 CHECKED    := $(if $(T),$(foreach t,$(CANDIDATES),$(if $(findstring $(T),$(t)),$(t))),$(CANDIDATES))
@@ -279,6 +281,9 @@ asan: ## the tests under AddressSanitizer and LeakSanitizer
 
 usan: ## the tests under UndefinedBehaviorSanitizer, division by zero included
 	@$(MAKE) --no-print-directory FLAVOUR=usan check
+
+tsan: ## the tests of threads under ThreadSanitizer
+	@$(MAKE) --no-print-directory FLAVOUR=tsan check T=threads
 
 coverage: ## the lines and branches of src/ that the tests reach
 	@rm -f build/coverage/obj/src/*.gcda

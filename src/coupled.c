@@ -81,10 +81,24 @@ static ilsa_status reserve(coupled *c, int count) {
     return ILSA_OK;
 }
 
-static void set_images(const coupled *c, const grid *g, double *width) {
+/* A loop over the active cells. */
+typedef struct loop {
+    coupled *c;
+    const coupled_problem *problem;
+} loop;
+
+static void share_cells(team_function *function, coupled *c, const coupled_problem *problem) {
+    loop l = {c, problem};
+    ilsai_team_run(problem->threads, function, &l, c->cells.count, ILSAI_SHARE_CELLS);
+}
+
+static void set_images(void *context, int first, int end) {
+    const loop *l = context;
+    const grid *g = l->problem->g;
+    double *width = l->problem->width;
     int image[4];
-    for (int k = 0; k < c->cells.count; k++) {
-        int cell = c->cells.cell[k];
+    for (int k = first; k < end; k++) {
+        int cell = l->c->cells.cell[k];
         int count = ilsai_grid_images(g, cell % g->nx, cell / g->nx, image);
         for (int m = 1; m < count; m++) {
             width[image[m]] = width[cell];
@@ -92,34 +106,45 @@ static void set_images(const coupled *c, const grid *g, double *width) {
     }
 }
 
-void ilsai_coupled_pressure(coupled *c, const coupled_problem *problem, coupled_counts *counts) {
-    const active *a = &c->cells;
-    double start = ilsai_clock(), *product = c->matrix.pressure;
-    size_t corner = (size_t)ilsai_grid_cell(problem->g, a->footprint.x0, a->footprint.y0);
-    ilsai_elasticity_multiply(problem->e, problem->width + corner, product + corner,
-                              (size_t)problem->g->nx);
-    counts->seconds_product += ilsai_clock() - start;
-    counts->products++;
-    for (int k = 0; k < a->count; k++) {
-        if (!a->tip[k]) {
-            int cell = a->cell[k];
-            problem->pressure[cell] = problem->sigma[cell] + product[cell] +
+static void add_pressures(void *context, int first, int end) {
+    const coupled *c = ((const loop *)context)->c;
+    const coupled_problem *problem = ((const loop *)context)->problem;
+    for (int k = first; k < end; k++) {
+        int cell = c->cells.cell[k];
+        if (!c->cells.tip[k]) {
+            problem->pressure[cell] = problem->sigma[cell] + c->matrix.pressure[cell] +
                                       c->matrix.edge[k] * problem->width[cell] + c->lift[k];
         }
     }
 }
 
+void ilsai_coupled_pressure(coupled *c, const coupled_problem *problem, coupled_counts *counts) {
+    const box *b = &c->cells.footprint;
+    double start = ilsai_clock();
+    size_t corner = (size_t)ilsai_grid_cell(problem->g, b->x0, b->y0);
+    ilsai_elasticity_multiply(problem->e, problem->width + corner, c->matrix.pressure + corner,
+                              (size_t)problem->g->nx);
+    counts->seconds_product += ilsai_clock() - start;
+    counts->products++;
+    share_cells(add_pressures, c, problem);
+}
+
+static void balance_volumes(void *context, int first, int end) {
+    const coupled *c = ((const loop *)context)->c;
+    const coupled_problem *problem = ((const loop *)context)->problem;
+    for (int k = first; k < end; k++) {
+        int cell = c->cells.cell[k];
+        double gain = ilsai_flow_gain_of(&c->fluid, &c->cells, problem->pressure, k);
+        c->rhs[k] = gain + (problem->gain[cell] + c->shift[k] -
+                            (problem->width[cell] - problem->width_old[cell]));
+    }
+}
+
 /* rhs = -(w - w_old - dt A(w) p - S), (4.4). */
 static void set_rhs(coupled *c, const coupled_problem *problem) {
-    const active *a = &c->cells;
-    ilsai_flow_set(&c->fluid, a, problem->g, problem->width, problem->width_old, problem->pressure,
-                   problem->dt / problem->mu_prime);
-    ilsai_flow_gain(&c->fluid, a, problem->pressure, c->rhs);
-    for (int k = 0; k < a->count; k++) {
-        int cell = a->cell[k];
-        c->rhs[k] +=
-            problem->gain[cell] + c->shift[k] - (problem->width[cell] - problem->width_old[cell]);
-    }
+    ilsai_flow_set(&c->fluid, &c->cells, problem->g, problem->width, problem->width_old,
+                   problem->pressure, problem->dt / problem->mu_prime);
+    share_cells(balance_volumes, c, problem);
 }
 
 static ilsa_status solve_iterative(coupled *c, coupled_counts *counts) {
@@ -196,7 +221,7 @@ static ilsa_status newton(coupled *c, const coupled_problem *problem, coupled_co
         }
         length = step_length(c, problem);
         double change = take_step(c, problem, length);
-        set_images(c, problem->g, problem->width);
+        share_cells(set_images, c, problem);
         if (isnan(change)) {
             return ILSA_STEP_REJECTED;
         }
@@ -244,7 +269,7 @@ ilsa_status ilsai_coupled_solve(coupled *c, const coupled_problem *problem,
     if (ilsai_elasticity_set_box(problem->e, bx, by) != ILSA_OK) {
         return ILSA_ERR_MEMORY;
     }
-    set_images(c, problem->g, problem->width);
+    share_cells(set_images, c, problem);
     c->matrix.g = problem->g;
     c->matrix.a = &c->cells;
     c->matrix.f = &c->fluid;
@@ -253,6 +278,8 @@ ilsa_status ilsai_coupled_solve(coupled *c, const coupled_problem *problem,
     if (find_responses(c, problem) != ILSA_OK) {
         return ILSA_ERR_MEMORY;
     }
+    c->matrix.threads = c->fluid.threads = problem->threads;
+    ilsai_elasticity_share(problem->e, problem->threads);
     c->matrix.products = 0;
     c->matrix.seconds_product = c->matrix.seconds_preconditioner = 0;
     status = newton(c, problem, counts);

@@ -32,6 +32,7 @@ typedef struct coupled_problem {
     double dt, mu_prime;
     ilsa_linear_solver linear;
     double tolerance; /* of the error in width, relative to the largest */
+    team *threads;    /* that share the loops, NULL: none */
 } coupled_problem;
 
 typedef struct coupled_counts {

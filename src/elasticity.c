@@ -69,6 +69,7 @@ struct elasticity {
     int bx, by;      /* the box in use */
     edge_table edge; /* made when first asked for */
     engine engine;
+    team *threads; /* that share a product, or NULL */
 };
 
 /*
@@ -165,9 +166,16 @@ ilsa_product ilsai_elasticity_method(const elasticity *e) {
     return e->use_fft ? ILSA_PRODUCT_FFT : ILSA_PRODUCT_BLAS;
 }
 
-edge_term ilsai_elasticity_edge(elasticity *e, const edge_front *front) {
+void ilsai_elasticity_share(elasticity *e, team *threads) {
+    e->threads = threads;
+}
+
+void ilsai_elasticity_set_edge(elasticity *e) {
     if (e->edge.dx == 0)
         ilsai_edge_table(&e->edge, e->dx, e->dy);
+}
+
+edge_term ilsai_elasticity_edge(const elasticity *e, const edge_front *front) {
     const double self = e->E_prime * ilsai_kernel(0, 0, e->dx, e->dy);
     edge_term term = ilsai_edge_lookup(&e->edge, front);
     return (edge_term){self * term.value, self * term.slope};
@@ -179,7 +187,7 @@ double ilsai_elasticity_entry(const elasticity *e, int i, int j) {
 
 void ilsai_elasticity_multiply(elasticity *e, const double *w, double *p, size_t stride) {
     if (e->use_fft)
-        ilsai_fft_convolve(e->engine.by_fft, e->bx, e->by, w, p, stride);
+        ilsai_fft_convolve(e->engine.by_fft, e->threads, e->bx, e->by, w, p, stride);
     else
         ilsai_dft_convolve(e->engine.by_blas, e->bx, e->by, w, p, stride);
 }

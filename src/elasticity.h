@@ -9,6 +9,7 @@
 #define ILSAI_ELASTICITY_H
 
 #include "edge.h"
+#include "team.h"
 #include <ilsa/solver.h>
 
 /* C of (4.6) divided by E' for a cell offset (i, j) of cells dx by dy, free of cancellation. */
@@ -44,9 +45,15 @@ void ilsai_elasticity_multiply(elasticity *e, const double *w, double *p, size_t
 /* ILSA_PRODUCT_FFT or _BLAS, whichever computes the products. */
 ilsa_product ilsai_elasticity_method(const elasticity *e);
 
-/* What C(0, 0) lacks in a cell beside the front, and its derivative by the distance of the front.
+/* From now on the team, which must outlive e or the next call of this, shares the products. */
+void ilsai_elasticity_share(elasticity *e, team *threads);
+
+/*
+ * What C(0, 0) lacks in a cell beside the front, and its derivative by the distance of the front;
+ * after ilsai_elasticity_set_edge, which is cheap but for the first call.
  */
-edge_term ilsai_elasticity_edge(elasticity *e, const edge_front *front);
+void ilsai_elasticity_set_edge(elasticity *e);
+edge_term ilsai_elasticity_edge(const elasticity *e, const edge_front *front);
 
 /* Entry C(i, j), |i| < bx, |j| < by, from the table of the box. */
 double ilsai_elasticity_entry(const elasticity *e, int i, int j);

@@ -6,6 +6,7 @@
 #ifndef ILSAI_FFT_H
 #define ILSAI_FFT_H
 
+#include "team.h"
 #include <stddef.h>
 
 typedef struct fft fft;
@@ -22,8 +23,9 @@ void ilsai_fft_destroy(fft **f);
 
 /*
  * p = kernel * w on a box of bx <= cx by by <= cy cells, rows of both arrays stride apart; every
- * bit of p is a function of cx, cy and w. Allocates nothing.
+ * bit of p is a function of cx, cy and w. The team shares the work. Allocates nothing.
  */
-void ilsai_fft_convolve(fft *f, int bx, int by, const double *w, double *p, size_t stride);
+void ilsai_fft_convolve(fft *f, team *threads, int bx, int by, const double *w, double *p,
+                        size_t stride);
 
 #endif

@@ -15,8 +15,10 @@ void ilsai_fft_destroy(fft **f) {
     *f = NULL;
 }
 
-void ilsai_fft_convolve(fft *f, int bx, int by, const double *w, double *p, size_t stride) {
+void ilsai_fft_convolve(fft *f, team *threads, int bx, int by, const double *w, double *p,
+                        size_t stride) {
     (void)f;
+    (void)threads;
     (void)bx;
     (void)by;
     (void)w;

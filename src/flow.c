@@ -1,5 +1,6 @@
 #include "flow.h"
 
+#include "tuning.h"
 #include <stdlib.h>
 
 ilsa_status ilsai_flow_reserve(flow *f, int count) {
@@ -23,36 +24,36 @@ void ilsai_flow_destroy(flow *f) {
     free(f->slope);
 }
 
-void ilsai_flow_set(flow *f, const active *a, const grid *g, const double *width,
-                    const double *width_old, const double *pressure, double dt_over_mu_prime) {
-    const double scale[GRID_FACES] = {
-        dt_over_mu_prime / (g->dx * g->dx), dt_over_mu_prime / (g->dx * g->dx),
-        dt_over_mu_prime / (g->dy * g->dy), dt_over_mu_prime / (g->dy * g->dy)};
-    for (int k = 0; k < a->count; k++) {
+/* What the loops over the active cells need. */
+typedef struct setting {
+    flow *f;
+    const active *a;
+    const double *width, *width_old, *pressure;
+    double scale[GRID_FACES];
+} setting;
+
+static void set_faces(void *context, int first, int end) {
+    const setting *s = context;
+    for (int k = first; k < end; k++) {
         for (int face = 0; face < GRID_FACES; face++) {
-            int at = GRID_FACES * k + face, other = a->neighbour[at];
-            f->conductance[at] = f->slope[at] = 0;
+            int at = GRID_FACES * k + face, other = s->a->neighbour[at];
+            s->f->conductance[at] = s->f->slope[at] = 0;
             if (other >= 0) {
-                int here = a->cell[k], there = a->cell[other];
-                double w = 0.5 * (width[here] + width[there]);
-                double mean = 0.5 * w + 0.25 * (width_old[here] + width_old[there]);
-                f->conductance[at] = scale[face] * mean * w * w;
-                f->slope[at] =
-                    scale[face] * w * (mean + 0.25 * w) * (pressure[there] - pressure[here]);
+                int here = s->a->cell[k], there = s->a->cell[other];
+                double w = 0.5 * (s->width[here] + s->width[there]);
+                double mean = 0.5 * w + 0.25 * (s->width_old[here] + s->width_old[there]);
+                double rise = s->pressure[there] - s->pressure[here];
+                s->f->conductance[at] = s->scale[face] * mean * w * w;
+                s->f->slope[at] = s->scale[face] * w * (mean + 0.25 * w) * rise;
             }
         }
     }
 }
 
-void ilsai_flow_gain(const flow *f, const active *a, const double *pressure, double *gain) {
-    for (int k = 0; k < a->count; k++) {
-        double sum = 0, p = pressure[a->cell[k]];
-        for (int face = 0; face < GRID_FACES; face++) {
-            int at = GRID_FACES * k + face, other = a->neighbour[at];
-            if (other >= 0) {
-                sum += f->conductance[at] * (pressure[a->cell[other]] - p);
-            }
-        }
-        gain[k] = sum;
-    }
+void ilsai_flow_set(flow *f, const active *a, const grid *g, const double *width,
+                    const double *width_old, const double *pressure, double dt_over_mu_prime) {
+    double along_x = dt_over_mu_prime / (g->dx * g->dx);
+    double along_y = dt_over_mu_prime / (g->dy * g->dy);
+    setting s = {f, a, width, width_old, pressure, {along_x, along_x, along_y, along_y}};
+    ilsai_team_run(f->threads, set_faces, &s, a->count, ILSAI_SHARE_CELLS);
 }

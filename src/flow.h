@@ -3,12 +3,14 @@
 #define ILSAI_FLOW_H
 
 #include "active.h"
+#include "team.h"
 
 /* Per active cell and face; 0 where there is no active cell across, so that no fluid passes. */
 typedef struct flow {
     double *conductance; /* dt w^3 / (mu' h^2): width gained per pressure difference */
     double *slope;       /* derivative of that face's gain by the width of either cell */
     int capacity;
+    team *threads; /* that share the loops, or NULL */
 } flow;
 
 ilsa_status ilsai_flow_reserve(flow *f, int count);
@@ -24,7 +26,17 @@ void ilsai_flow_destroy(flow *f);
 void ilsai_flow_set(flow *f, const active *a, const grid *g, const double *width,
                     const double *width_old, const double *pressure, double dt_over_mu_prime);
 
-/* gain[k] = dt [A(w) p] of active cell k, for the conductances as they are set. */
-void ilsai_flow_gain(const flow *f, const active *a, const double *pressure, double *gain);
+/* dt [A(w) p] of active cell k, for the conductances as they are set. */
+static inline double ilsai_flow_gain_of(const flow *f, const active *a, const double *pressure,
+                                        int k) {
+    double sum = 0, p = pressure[a->cell[k]];
+    for (int face = 0; face < GRID_FACES; face++) {
+        int at = GRID_FACES * k + face, other = a->neighbour[at];
+        if (other >= 0) {
+            sum += f->conductance[at] * (pressure[a->cell[other]] - p);
+        }
+    }
+    return sum;
+}
 
 #endif

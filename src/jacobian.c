@@ -1,6 +1,7 @@
 #include "jacobian.h"
 
 #include "clock.h"
+#include "tuning.h"
 #include <cblas.h>
 #include <ilsa/solver.h>
 #include <lapacke.h>
@@ -52,60 +53,87 @@ double ilsai_jacobian_edge_pressure(const jacobian *m, int k, const double *x) {
     return r ? respond(m, r, r->pressure, x) : 0;
 }
 
+/* A loop over the active cells: what a product or the preconditioner takes and gives. */
+typedef struct loop {
+    jacobian *m;
+    const double *x;
+    double *y;
+} loop;
+
+static void share_cells(team_function *function, jacobian *m, const double *x, double *y) {
+    loop l = {m, x, y};
+    ilsai_team_run(m->threads, function, &l, m->a->count, ILSAI_SHARE_CELLS);
+}
+
+static void set_width(const jacobian *m, int k, double w) {
+    int image[4], cell = m->a->cell[k];
+    int count = ilsai_grid_images(m->g, cell % m->g->nx, cell / m->g->nx, image);
+    for (int c = 0; c < count; c++) {
+        m->width[image[c]] = w;
+    }
+}
+
+static void set_widths(void *context, int first, int end) {
+    const loop *l = context;
+    for (int k = first; k < end; k++) {
+        set_width(l->m, k, l->m->a->tip[k] ? ilsai_jacobian_tip_width(l->m, k, l->x) : l->x[k]);
+    }
+}
+
+static void complete_pressures(void *context, int first, int end) {
+    const loop *l = context;
+    const jacobian *m = l->m;
+    for (int k = first; k < end; k++) {
+        double *pressure = &m->pressure[m->a->cell[k]];
+        if (m->a->tip[k]) {
+            *pressure = l->x[k];
+        } else {
+            *pressure += m->edge[k] * l->x[k] + ilsai_jacobian_edge_pressure(m, k, l->x);
+        }
+    }
+}
+
 /* Pressure changes that the width changes x of the channel cells bring about, and the tip's own. */
 static void apply_elasticity(jacobian *m, const double *x) {
     const active *a = m->a;
-    int image[4];
-    for (int k = 0; k < a->count; k++) {
-        int cell = a->cell[k];
-        int count = ilsai_grid_images(m->g, cell % m->g->nx, cell / m->g->nx, image);
-        double w = a->tip[k] ? ilsai_jacobian_tip_width(m, k, x) : x[k];
-        for (int c = 0; c < count; c++) {
-            m->width[image[c]] = w;
-        }
-    }
+    share_cells(set_widths, m, x, NULL);
     double start = ilsai_clock();
     size_t corner = (size_t)ilsai_grid_cell(m->g, a->footprint.x0, a->footprint.y0);
     ilsai_elasticity_multiply(m->e, m->width + corner, m->pressure + corner, (size_t)m->g->nx);
     m->seconds_product += ilsai_clock() - start;
     m->products++;
-    for (int k = 0; k < a->count; k++) {
-        if (a->tip[k]) {
-            m->pressure[a->cell[k]] = x[k];
-        } else {
-            m->pressure[a->cell[k]] += m->edge[k] * x[k] + ilsai_jacobian_edge_pressure(m, k, x);
-        }
+    share_cells(complete_pressures, m, x, NULL);
+}
+
+static void clear_widths(void *context, int first, int end) {
+    const loop *l = context;
+    for (int k = first; k < end; k++) {
+        set_width(l->m, k, 0);
     }
 }
 
-static void clear_width(jacobian *m) {
+static void balance_volumes(void *context, int first, int end) {
+    const loop *l = context;
+    const jacobian *m = l->m;
     const active *a = m->a;
-    int image[4];
-    for (int k = 0; k < a->count; k++) {
-        int cell = a->cell[k];
-        int count = ilsai_grid_images(m->g, cell % m->g->nx, cell / m->g->nx, image);
-        for (int c = 0; c < count; c++) {
-            m->width[image[c]] = 0;
-        }
-    }
-}
-
-void ilsai_jacobian_multiply(void *context, const double *x, double *y) {
-    jacobian *m = context;
-    const active *a = m->a;
-    apply_elasticity(m, x);
-    ilsai_flow_gain(m->f, a, m->pressure, y);
-    for (int k = 0; k < a->count; k++) {
+    for (int k = first; k < end; k++) {
         double w = m->width[a->cell[k]], from_width = 0;
+        double from_pressure = ilsai_flow_gain_of(m->f, a, m->pressure, k);
         for (int face = 0; face < GRID_FACES; face++) {
             int at = GRID_FACES * k + face, other = a->neighbour[at];
             if (other >= 0) {
                 from_width += m->f->slope[at] * (w + m->width[a->cell[other]]);
             }
         }
-        y[k] = w - from_width - y[k] - ilsai_jacobian_tip_gain(m, k, x);
+        l->y[k] = w - from_width - from_pressure - ilsai_jacobian_tip_gain(m, k, l->x);
     }
-    clear_width(m);
+}
+
+void ilsai_jacobian_multiply(void *context, const double *x, double *y) {
+    jacobian *m = context;
+    apply_elasticity(m, x);
+    share_cells(balance_volumes, m, x, y);
+    share_cells(clear_widths, m, x, NULL);
 }
 
 /* What the self term of active cell k lacks, its own part in the front's move included. */
@@ -160,9 +188,7 @@ static double half_on_axis(int mirror, int count, int at, int first) {
     return mirror && count % 2 && at == first ? 0.5 : 1;
 }
 
-/* Places and weights of the active cells on the rectangle of the preconditioner. */
-static ilsa_status place_cells(jacobian *m, const box *part) {
-    const grid *g = m->g;
+static ilsa_status reserve_places(jacobian *m) {
     size_t count = (size_t)m->a->count;
     if (count > m->place_capacity) {
         size_t grown = count + count / 2;
@@ -175,21 +201,29 @@ static ilsa_status place_cells(jacobian *m, const box *part) {
         }
         m->place_capacity = grown;
     }
-    size_t stride = ilsai_box_columns(part) + 2;
-    for (size_t k = 0; k < count; k++) {
-        int i = m->a->cell[k] % g->nx, j = m->a->cell[k] / g->nx;
-        m->place[k] = (size_t)(j - part->y0 + 1) * stride + (size_t)(i - part->x0 + 1);
-        m->weight[k] = half_on_axis(g->mirror_x, g->nx, i, g->lo_x) *
-                       half_on_axis(g->mirror_y, g->ny, j, g->lo_y);
-    }
     return ILSA_OK;
 }
 
-static void set_flow(jacobian *m) {
+/* Places and weights of the active cells on the rectangle of the preconditioner. */
+static void place_cells(void *context, int first, int end) {
+    jacobian *m = ((const loop *)context)->m;
+    const grid *g = m->g;
+    box part = ilsai_box_fold(g, &m->a->footprint);
+    size_t stride = ilsai_box_columns(&part) + 2;
+    for (int k = first; k < end; k++) {
+        int i = m->a->cell[k] % g->nx, j = m->a->cell[k] / g->nx;
+        m->place[k] = (size_t)(j - part.y0 + 1) * stride + (size_t)(i - part.x0 + 1);
+        m->weight[k] = half_on_axis(g->mirror_x, g->nx, i, g->lo_x) *
+                       half_on_axis(g->mirror_y, g->ny, j, g->lo_y);
+    }
+}
+
+static void set_flow(void *context, int first, int end) {
+    jacobian *m = ((const loop *)context)->m;
+    const grid *g = m->g;
     multigrid_level *l = &m->pressures.level[0];
     double spring = JACOBIAN_SPRING / ilsai_elasticity_entry(m->e, 0, 0);
-    for (int k = 0; k < m->a->count; k++) {
-        const grid *g = m->g;
+    for (int k = first; k < end; k++) {
         const double *conductance = m->f->conductance + (size_t)GRID_FACES * (size_t)k;
         int i = m->a->cell[k] % g->nx, j = m->a->cell[k] / g->nx;
         size_t at = m->place[k];
@@ -197,7 +231,14 @@ static void set_flow(jacobian *m) {
         l->up[at] = half_on_axis(g->mirror_x, g->nx, i, g->lo_x) * conductance[GRID_UP];
         l->spring[at] = m->a->tip[k] ? 0 : m->weight[k] * spring;
     }
-    ilsai_multigrid_build(&m->pressures);
+}
+
+static void set_open_cells(void *context, int first, int end) {
+    jacobian *m = ((const loop *)context)->m;
+    for (int k = first; k < end; k++) {
+        m->widths.open[m->place[k]] = !m->a->tip[k];
+        m->widths.extra[m->place[k]] = m->a->tip[k] ? 0 : edge_self(m, k);
+    }
 }
 
 static void set_near_field(jacobian *m) {
@@ -208,25 +249,48 @@ static void set_near_field(jacobian *m) {
     n->beside = ilsai_elasticity_entry(m->e, 1, 0);
     n->above = ilsai_elasticity_entry(m->e, 0, 1);
     n->corner = ilsai_elasticity_entry(m->e, 1, 1);
-    for (int k = 0; k < m->a->count; k++) {
-        n->open[m->place[k]] = !m->a->tip[k];
-        n->extra[m->place[k]] = m->a->tip[k] ? 0 : edge_self(m, k);
-    }
+    share_cells(set_open_cells, m, NULL, NULL);
 }
 
 ilsa_status ilsai_jacobian_set_preconditioner(jacobian *m) {
     double start = ilsai_clock();
     box part = ilsai_box_fold(m->g, &m->a->footprint);
     int nx = (int)ilsai_box_columns(&part), ny = (int)ilsai_box_rows(&part);
-    if (place_cells(m, &part) != ILSA_OK ||
-        ilsai_multigrid_shape(&m->pressures, nx, ny) != ILSA_OK ||
+    m->pressures.threads = m->widths.threads = m->threads;
+    if (reserve_places(m) != ILSA_OK || ilsai_multigrid_shape(&m->pressures, nx, ny) != ILSA_OK ||
         ilsai_nearfield_shape(&m->widths, nx, ny) != ILSA_OK) {
         return ILSA_ERR_MEMORY;
     }
-    set_flow(m);
+    share_cells(place_cells, m, NULL, NULL);
+    share_cells(set_flow, m, NULL, NULL);
+    ilsai_multigrid_build(&m->pressures);
     set_near_field(m);
     m->seconds_preconditioner += ilsai_clock() - start;
     return ILSA_OK;
+}
+
+static void lay_out(void *context, int first, int end) {
+    const loop *l = context;
+    for (int k = first; k < end; k++) {
+        l->m->pressures.level[0].b[l->m->place[k]] = l->m->weight[k] * l->x[k];
+    }
+}
+
+static void hand_over(void *context, int first, int end) {
+    jacobian *m = ((const loop *)context)->m;
+    for (int k = first; k < end; k++) {
+        size_t at = m->place[k];
+        m->widths.y[at] = m->a->tip[k] ? 0 : m->pressures.level[0].y[at];
+    }
+}
+
+static void read_out(void *context, int first, int end) {
+    const loop *l = context;
+    const jacobian *m = l->m;
+    for (int k = first; k < end; k++) {
+        size_t at = m->place[k];
+        l->y[k] = m->a->tip[k] ? m->pressures.level[0].y[at] : m->widths.x[at];
+    }
 }
 
 /*
@@ -237,19 +301,11 @@ ilsa_status ilsai_jacobian_set_preconditioner(jacobian *m) {
 void ilsai_jacobian_precondition(void *context, const double *x, double *y) {
     jacobian *m = context;
     double start = ilsai_clock();
-    multigrid_level *l = &m->pressures.level[0];
-    int count = m->a->count;
-    for (int k = 0; k < count; k++) {
-        l->b[m->place[k]] = m->weight[k] * x[k];
-    }
+    share_cells(lay_out, m, x, NULL);
     ilsai_multigrid_cycle(&m->pressures);
-    for (int k = 0; k < count; k++) {
-        m->widths.y[m->place[k]] = m->a->tip[k] ? 0 : l->y[m->place[k]];
-    }
+    share_cells(hand_over, m, NULL, NULL);
     ilsai_nearfield_solve(&m->widths);
-    for (int k = 0; k < count; k++) {
-        y[k] = m->a->tip[k] ? l->y[m->place[k]] : m->widths.x[m->place[k]];
-    }
+    share_cells(read_out, m, NULL, y);
     m->seconds_preconditioner += ilsai_clock() - start;
 }
 

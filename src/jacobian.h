@@ -42,6 +42,7 @@ typedef struct jacobian {
     nearfield widths;
     size_t *place;  /* of each active cell in it */
     double *weight; /* the part of each that lies in the fold */
+    team *threads;  /* that share the loops, or NULL */
     long products;
     double seconds_product, seconds_preconditioner;
 } jacobian;

@@ -1,5 +1,6 @@
 #include "multigrid.h"
 
+#include "tuning.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -117,8 +118,22 @@ static size_t row(const multigrid_level *l, int j) {
     return ((size_t)j + 1) * (size_t)l->stride + 1;
 }
 
-static void set_inverse(multigrid_level *l) {
-    for (int j = 0; j < l->ny; j++) {
+/* A loop over the rows of a level; what it needs depends on the loop. */
+typedef struct sweep {
+    const multigrid_level *l, *coarse;
+    double part;
+    const double *from;
+    double *to;
+} sweep;
+
+/* Shares the rows of the level that nx is the length of. */
+static void share_rows(const multigrid *m, team_function *function, sweep *s, int rows, int nx) {
+    ilsai_team_run(m->threads, function, s, rows, 1 + ILSAI_SHARE_CELLS / nx);
+}
+
+static void set_inverse(void *context, int first, int last) {
+    const multigrid_level *l = ((const sweep *)context)->l;
+    for (int j = first; j < last; j++) {
         for (size_t at = row(l, j), end = at + (size_t)l->nx; at < end; at++) {
             double sum = diagonal(l, at);
             l->inverse[at] = sum > 0 ? 1 / sum : 0;
@@ -164,12 +179,20 @@ static double spread(int i, int n, const double *wide, const int *into, const do
     return (wide[i] + wide[i + 1]) / (wider[into[i]] + wider[into[i + 1]]);
 }
 
-/* Sums of springs, and of the faces between cells that are not joined. */
-static void coarsen(const multigrid_level *fine, multigrid_level *coarse) {
-    memset(coarse->right, 0, LEVEL_ARRAYS * level_size(coarse->nx, coarse->ny) * sizeof(double));
-    join_widths(fine->nx, fine->wide_x, fine->into_x, coarse->wide_x);
-    join_widths(fine->ny, fine->wide_y, fine->into_y, coarse->wide_y);
-    for (int j = 0; j < fine->ny; j++) {
+/* The first row that goes into row `coarse` of the next level. */
+static int first_into(const multigrid_level *l, int coarse) {
+    int j = 0;
+    while (j < l->ny && l->into_y[j] < coarse) {
+        j++;
+    }
+    return j;
+}
+
+/* Sums of springs, and of the faces between cells that are not joined; by rows of the sums. */
+static void sum_faces(void *context, int first, int end) {
+    const multigrid_level *fine = ((const sweep *)context)->l;
+    const multigrid_level *coarse = ((const sweep *)context)->coarse;
+    for (int j = first_into(fine, first); j < fine->ny && fine->into_y[j] < end; j++) {
         size_t at = row(fine, j), to = row(coarse, fine->into_y[j]);
         double up = spread(j, fine->ny, fine->wide_y, fine->into_y, coarse->wide_y);
         for (int i = 0; i < fine->nx; i++, at++) {
@@ -182,12 +205,22 @@ static void coarsen(const multigrid_level *fine, multigrid_level *coarse) {
     }
 }
 
+static void coarsen(const multigrid *m, const multigrid_level *fine,
+                    const multigrid_level *coarse) {
+    memset(coarse->right, 0, LEVEL_ARRAYS * level_size(coarse->nx, coarse->ny) * sizeof(double));
+    join_widths(fine->nx, fine->wide_x, fine->into_x, coarse->wide_x);
+    join_widths(fine->ny, fine->wide_y, fine->into_y, coarse->wide_y);
+    sweep s = {.l = fine, .coarse = coarse};
+    share_rows(m, sum_faces, &s, coarse->ny, fine->nx);
+}
+
 void ilsai_multigrid_build(multigrid *m) {
     double *pool = m->pool;
     int *maps = m->maps;
     m->levels = 1;
     for (multigrid_level *l = m->level;; l++, m->levels++) {
-        set_inverse(l);
+        sweep s = {.l = l};
+        share_rows(m, set_inverse, &s, l->ny, l->nx);
         choose_halving(l);
         if (!(l->half_x || l->half_y)) {
             return;
@@ -196,7 +229,7 @@ void ilsai_multigrid_build(multigrid *m) {
         pool += LEVEL_ARRAYS * level_size(l->nx, l->ny);
         maps += l->nx + l->ny;
         place_level(l + 1, nx, ny, pool, maps);
-        coarsen(l, l + 1);
+        coarsen(m, l, l + 1);
     }
 }
 
@@ -207,34 +240,53 @@ static inline double inflow(const multigrid_level *l, const double *y, size_t at
            (l->up[at] * y[at + stride] + l->up[at - stride] * y[at - stride]);
 }
 
-/* A damped Jacobi step from one array into another. */
-static void relax(const multigrid_level *l, double part, const double *from, double *to) {
-    for (int j = 0; j < l->ny; j++) {
+static void relax_rows(void *context, int first, int last) {
+    const sweep *s = context;
+    const multigrid_level *l = s->l;
+    for (int j = first; j < last; j++) {
         for (size_t at = row(l, j), end = at + (size_t)l->nx; at < end; at++) {
-            double y = (l->b[at] + inflow(l, from, at)) * l->inverse[at];
-            to[at] = from[at] + part * (y - from[at]);
+            double y = (l->b[at] + inflow(l, s->from, at)) * l->inverse[at];
+            s->to[at] = s->from[at] + s->part * (y - s->from[at]);
+        }
+    }
+}
+
+/* A damped Jacobi step from one array into another. */
+static void relax(const multigrid *m, const multigrid_level *l, double part, const double *from,
+                  double *to) {
+    sweep s = {l, NULL, part, from, to};
+    share_rows(m, relax_rows, &s, l->ny, l->nx);
+}
+
+/* The first step, from y = 0. */
+static void relax_zero(void *context, int first, int last) {
+    const multigrid_level *l = ((const sweep *)context)->l;
+    for (int j = first; j < last; j++) {
+        for (size_t at = row(l, j), end = at + (size_t)l->nx; at < end; at++) {
+            l->work[at] = damping[0] * l->b[at] * l->inverse[at];
         }
     }
 }
 
 /* Both steps, y = 0 before them. */
-static void relax_down(const multigrid_level *l) {
-    for (int j = 0; j < l->ny; j++) {
-        for (size_t at = row(l, j), end = at + (size_t)l->nx; at < end; at++) {
-            l->work[at] = damping[0] * l->b[at] * l->inverse[at];
-        }
-    }
-    relax(l, damping[1], l->work, l->y);
+static void relax_down(const multigrid *m, const multigrid_level *l) {
+    sweep s = {.l = l};
+    share_rows(m, relax_zero, &s, l->ny, l->nx);
+    relax(m, l, damping[1], l->work, l->y);
 }
 
-static void relax_up(const multigrid_level *l) {
-    relax(l, damping[1], l->y, l->work);
-    relax(l, damping[0], l->work, l->y);
+static void relax_up(const multigrid *m, const multigrid_level *l) {
+    relax(m, l, damping[1], l->y, l->work);
+    relax(m, l, damping[0], l->work, l->y);
 }
 
-static void restrict_residual(const multigrid_level *l, const multigrid_level *coarse) {
-    memset(coarse->b, 0, level_size(coarse->nx, coarse->ny) * sizeof(double));
-    for (int j = 0; j < l->ny; j++) {
+/* By rows of the coarse level. */
+static void sum_residual(void *context, int first, int end) {
+    const multigrid_level *l = ((const sweep *)context)->l;
+    const multigrid_level *coarse = ((const sweep *)context)->coarse;
+    memset(coarse->b + row(coarse, first), 0,
+           (size_t)(end - first) * (size_t)coarse->stride * sizeof(double));
+    for (int j = first_into(l, first); j < l->ny && l->into_y[j] < end; j++) {
         size_t at = row(l, j), to = row(coarse, l->into_y[j]);
         for (int i = 0; i < l->nx; i++, at++) {
             double out = diagonal(l, at) * l->y[at];
@@ -243,8 +295,15 @@ static void restrict_residual(const multigrid_level *l, const multigrid_level *c
     }
 }
 
-static void add_correction(const multigrid_level *l, const multigrid_level *coarse) {
-    for (int j = 0; j < l->ny; j++) {
+static void restrict_residual(const multigrid *m, const multigrid_level *l) {
+    sweep s = {.l = l, .coarse = l + 1};
+    share_rows(m, sum_residual, &s, l[1].ny, l->nx);
+}
+
+static void add_rows(void *context, int first, int end) {
+    const multigrid_level *l = ((const sweep *)context)->l;
+    const multigrid_level *coarse = ((const sweep *)context)->coarse;
+    for (int j = first; j < end; j++) {
         size_t at = row(l, j), from = row(coarse, l->into_y[j]);
         for (int i = 0; i < l->nx; i++, at++) {
             l->y[at] += l->inverse[at] > 0 ? coarse->y[from + (size_t)l->into_x[i]] : 0;
@@ -252,17 +311,22 @@ static void add_correction(const multigrid_level *l, const multigrid_level *coar
     }
 }
 
+static void add_correction(const multigrid *m, const multigrid_level *l) {
+    sweep s = {.l = l, .coarse = l + 1};
+    share_rows(m, add_rows, &s, l->ny, l->nx);
+}
+
 /* The V-cycle; the last level is one cell, or cells that nothing connects. */
 void ilsai_multigrid_cycle(multigrid *m) {
     for (int k = 0; k + 1 < m->levels; k++) {
-        relax_down(&m->level[k]);
-        restrict_residual(&m->level[k], &m->level[k + 1]);
+        relax_down(m, &m->level[k]);
+        restrict_residual(m, &m->level[k]);
     }
     const multigrid_level *last = &m->level[m->levels - 1];
     size_t only = row(last, 0);
     last->y[only] = last->b[only] * last->inverse[only];
     for (int k = m->levels - 2; k >= 0; k--) {
-        add_correction(&m->level[k], &m->level[k + 1]);
-        relax_up(&m->level[k]);
+        add_correction(m, &m->level[k]);
+        relax_up(m, &m->level[k]);
     }
 }

@@ -7,6 +7,7 @@
 #ifndef ILSAI_MULTIGRID_H
 #define ILSAI_MULTIGRID_H
 
+#include "team.h"
 #include <ilsa/status.h>
 #include <stddef.h>
 
@@ -32,6 +33,7 @@ typedef struct multigrid {
     double *pool;
     int *maps;
     size_t room, map_room;
+    team *threads; /* that share the loops, or NULL */
 } multigrid;
 
 void ilsai_multigrid_destroy(multigrid *m);

@@ -1,5 +1,6 @@
 #include "nearfield.h"
 
+#include "tuning.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -51,15 +52,21 @@ static void set_border(const nearfield *f, double *v) {
     }
 }
 
-/* y -= C step in the open cells. */
-static void subtract_product(const nearfield *f) {
-    size_t stride = (size_t)f->stride;
-    set_border(f, f->step);
-    for (int j = 0; j < f->ny; j++) {
-        size_t first = ((size_t)j + 1) * stride + 1;
-        const double *s = f->step + first, *below = s - stride, *above = s + stride;
-        const double *extra = f->extra + first, *open = f->open + first;
-        double *y = f->y + first;
+static void share_rows(const nearfield *f, team_function *function, void *context) {
+    ilsai_team_run(f->threads, function, context, f->ny, 1 + ILSAI_SHARE_CELLS / f->nx);
+}
+
+static size_t row(const nearfield *f, int j) {
+    return ((size_t)j + 1) * (size_t)f->stride + 1;
+}
+
+static void subtract_rows(void *context, int first, int end) {
+    const nearfield *f = context;
+    for (int j = first; j < end; j++) {
+        size_t at = row(f, j), stride = (size_t)f->stride;
+        const double *s = f->step + at, *below = s - stride, *above = s + stride;
+        const double *extra = f->extra + at, *open = f->open + at;
+        double *y = f->y + at;
         for (int i = 0; i < f->nx; i++) {
             double sum = (f->self + extra[i]) * s[i] + f->beside * (s[i - 1] + s[i + 1]) +
                          f->above * (below[i] + above[i]) +
@@ -69,14 +76,40 @@ static void subtract_product(const nearfield *f) {
     }
 }
 
+/* y -= C step in the open cells. */
+static void subtract_product(nearfield *f) {
+    set_border(f, f->step);
+    share_rows(f, subtract_rows, f);
+}
+
+/* A step of the iteration. */
+typedef struct move {
+    nearfield *f;
+    double a, b;
+} move;
+
+/* x = step = b y. */
+static void begin_rows(void *context, int first, int end) {
+    const move *m = context;
+    for (int j = first; j < end; j++) {
+        size_t at = row(m->f, j);
+        double *s = m->f->step + at, *x = m->f->x + at;
+        const double *y = m->f->y + at;
+        for (int i = 0; i < m->f->nx; i++) {
+            x[i] = s[i] = m->b * y[i];
+        }
+    }
+}
+
 /* step = a step + b y; x += step. */
-static void advance(const nearfield *f, double a, double b) {
-    for (int j = 0; j < f->ny; j++) {
-        size_t first = ((size_t)j + 1) * (size_t)f->stride + 1;
-        double *s = f->step + first, *x = f->x + first;
-        const double *y = f->y + first;
-        for (int i = 0; i < f->nx; i++) {
-            s[i] = a * s[i] + b * y[i];
+static void advance_rows(void *context, int first, int end) {
+    const move *m = context;
+    for (int j = first; j < end; j++) {
+        size_t at = row(m->f, j);
+        double *s = m->f->step + at, *x = m->f->x + at;
+        const double *y = m->f->y + at;
+        for (int i = 0; i < m->f->nx; i++) {
+            s[i] = m->a * s[i] + m->b * y[i];
             x[i] += s[i];
         }
     }
@@ -91,18 +124,17 @@ static void bound_spectrum(const nearfield *f, double *least, double *most) {
 }
 
 void ilsai_nearfield_solve(nearfield *f) {
-    size_t size = ((size_t)f->nx + 2) * ((size_t)f->ny + 2);
     double least, most;
     bound_spectrum(f, &least, &most);
     double middle = 0.5 * (most + least), half = 0.5 * (most - least), ratio = middle / half;
     double rho = 1 / ratio;
-    memset(f->x, 0, size * sizeof *f->x);
-    memset(f->step, 0, size * sizeof *f->step);
-    advance(f, 0, 1 / middle);
+    move first = {f, 0, 1 / middle};
+    share_rows(f, begin_rows, &first);
     for (int k = 1; k < NEARFIELD_STEPS; k++) {
         subtract_product(f);
         double next = 1 / (2 * ratio - rho);
-        advance(f, next * rho, 2 * next / half);
+        move on = {f, next * rho, 2 * next / half};
+        share_rows(f, advance_rows, &on);
         rho = next;
     }
 }

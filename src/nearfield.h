@@ -6,6 +6,7 @@
 #ifndef ILSAI_NEARFIELD_H
 #define ILSAI_NEARFIELD_H
 
+#include "team.h"
 #include <ilsa/status.h>
 #include <stddef.h>
 
@@ -18,6 +19,7 @@ typedef struct nearfield {
     double *x, *y;                      /* widths out, pressures in; y is overwritten */
     double *step;
     size_t room;
+    team *threads; /* that share the loops, or NULL */
 } nearfield;
 
 void ilsai_nearfield_destroy(nearfield *f);

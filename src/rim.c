@@ -58,9 +58,20 @@ static void forget_wild_pressures(ilsa_solver *s, const box *part) {
     }
 }
 
-ilsa_status ilsai_rim_begin(ilsa_solver *s, double dt) {
+/* A loop over what a pass of a step of dt sets at the front. */
+typedef struct loop {
+    ilsa_solver *s;
+    const front_cell *cells; /* that the march reached */
+    double dt;
+    int hold;
+} loop;
+
+/* Rows of the region. */
+static void begin_rows(void *context, int first, int end) {
+    ilsa_solver *s = ((const loop *)context)->s;
+    double dt = ((const loop *)context)->dt;
     box part = ilsai_box_fold(&s->g, &s->region);
-    for (int j = part.y0; j <= part.y1; j++) {
+    for (int j = part.y0 + first; j < part.y0 + end; j++) {
         for (int i = part.x0; i <= part.x1; i++) {
             int cell = ilsai_grid_cell(&s->g, i, j);
             int channel = s->field.kind[cell] >= ILSA_CELL_SURVEY;
@@ -69,6 +80,14 @@ ilsa_status ilsai_rim_begin(ilsa_solver *s, double dt) {
             s->edge[cell] = 0;
         }
     }
+}
+
+ilsa_status ilsai_rim_begin(ilsa_solver *s, double dt) {
+    box part = ilsai_box_fold(&s->g, &s->region);
+    loop l = {s, NULL, dt, 0};
+    int columns = (int)ilsai_box_columns(&part), rows = (int)ilsai_box_rows(&part);
+    ilsai_team_run(s->threads, begin_rows, &l, rows, 1 + ILSAI_SHARE_CELLS / columns);
+    ilsai_elasticity_set_edge(s->elastic);
     forget_wild_pressures(s, &part);
     ilsa_status status = check_sources(s);
     if (status == ILSA_OK) {
@@ -157,8 +176,7 @@ static double leak_for(const ilsa_solver *s, const front_cell *c, double dt,
            (s->g.dx * s->g.dy);
 }
 
-static void leak_at_front(ilsa_solver *s, const front_cell *c, double dt) {
-    tip_record *record = &s->trial_tips.at[s->trial_tips.count++];
+static void leak_at_front(ilsa_solver *s, const front_cell *c, double dt, tip_record *record) {
     record->cell = c->cell;
     set_leak(s, c->cell, leak_for(s, c, dt, &record->history));
 }
@@ -203,7 +221,8 @@ static rim_width mean_width(const ilsa_solver *s, const front_cell *c, double dt
     return w;
 }
 
-static void set_cell(ilsa_solver *s, const front_cell *c, double dt, int hold, double *by_advance) {
+/* Kind, velocity, width and leak-off of the k-th cell that the march reached, and its record. */
+static void set_cell(ilsa_solver *s, const front_cell *c, double dt, int hold, int k) {
     unsigned char was = s->trial.kind[c->cell], kind = classify(s, c, hold);
     s->trial.kind[c->cell] = kind;
     s->trial.speed[c->cell] = c->V;
@@ -215,10 +234,17 @@ static void set_cell(ilsa_solver *s, const front_cell *c, double dt, int hold, d
     if (kind == ILSA_CELL_TIP || was != ILSA_CELL_CHANNEL) {
         rim_width w = mean_width(s, c, dt);
         set_width(s, c->cell, w.value);
-        *by_advance = w.by_advance;
+        s->by_advance[k] = w.by_advance;
     }
     if (ilsai_has_leakoff(s)) {
-        leak_at_front(s, c, dt);
+        leak_at_front(s, c, dt, &s->trial_tips.at[k]);
+    }
+}
+
+static void set_cells(void *context, int first, int end) {
+    const loop *l = context;
+    for (int k = first; k < end; k++) {
+        set_cell(l->s, &l->cells[k], l->dt, l->hold, k);
     }
 }
 
@@ -235,13 +261,19 @@ static edge_term edge_of_seed(const ilsa_solver *s, const front_seed *seed) {
     return ilsai_elasticity_edge(s->elastic, &seen);
 }
 
-static void set_edges(ilsa_solver *s, const front_cell *cells, int count) {
-    for (int k = 0; k < s->seed_count; k++) {
+static void set_seed_edges(void *context, int first, int end) {
+    ilsa_solver *s = ((const loop *)context)->s;
+    for (int k = first; k < end; k++) {
         s->edge[s->seeds[k].cell] = edge_of_seed(s, &s->seeds[k]).value;
     }
-    for (int k = 0; k < count; k++) {
-        int full = s->trial.kind[cells[k].cell] >= ILSA_CELL_SURVEY;
-        s->edge[cells[k].cell] = full ? edge_of(s, &cells[k]).value : 0;
+}
+
+static void set_cell_edges(void *context, int first, int end) {
+    const loop *l = context;
+    for (int k = first; k < end; k++) {
+        const front_cell *c = &l->cells[k];
+        int full = l->s->trial.kind[c->cell] >= ILSA_CELL_SURVEY;
+        l->s->edge[c->cell] = full ? edge_of(l->s, c).value : 0;
     }
 }
 
@@ -286,6 +318,33 @@ static ilsa_status reserve(ilsa_solver *s, int count) {
     return ILSA_OK;
 }
 
+/* The records of the cells that are wet, without gaps. */
+static void pack_records(ilsa_solver *s, const front_cell *cells, int count) {
+    tip_records *r = &s->trial_tips;
+    r->count = 0;
+    for (int k = 0; k < count; k++) {
+        if (s->trial.kind[cells[k].cell] != ILSA_CELL_EMPTY) {
+            r->at[r->count++] = r->at[k];
+        }
+    }
+}
+
+/* What depends on the cells set before: the footprint and first guesses of pressure. */
+static ilsa_status wet_cells(ilsa_solver *s, const front_cell *cells, int count) {
+    s->trial_footprint = s->now.footprint;
+    for (int k = 0; k < count; k++) {
+        if (s->trial.kind[cells[k].cell] != ILSA_CELL_EMPTY) {
+            guess_pressure(s, &cells[k]);
+            if (!grow_footprint(s, cells[k].cell)) {
+                return ilsai_fail(&s->error, ILSA_MESH_EDGE,
+                                  "the footprint reaches the edge of the mesh of %d x %d cells",
+                                  s->g.nx, s->g.ny);
+            }
+        }
+    }
+    return ILSA_OK;
+}
+
 ilsa_status ilsai_rim_set(ilsa_solver *s, double dt, int hold) {
     int count;
     const front_cell *cells = ilsai_front_cells(s->march, &count);
@@ -296,21 +355,17 @@ ilsa_status ilsai_rim_set(ilsa_solver *s, double dt, int hold) {
         return ILSA_ERR_MEMORY;
     }
     ilsa_status status = drop_unreached(s);
-    s->trial_tips.count = 0;
-    s->trial_footprint = s->now.footprint;
-    for (int k = 0; k < count && status == ILSA_OK; k++) {
-        set_cell(s, &cells[k], dt, hold, &s->by_advance[k]);
-        if (s->trial.kind[cells[k].cell] != ILSA_CELL_EMPTY) {
-            guess_pressure(s, &cells[k]);
-            if (!grow_footprint(s, cells[k].cell)) {
-                status = ilsai_fail(&s->error, ILSA_MESH_EDGE,
-                                    "the footprint reaches the edge of the mesh of %d x %d cells",
-                                    s->g.nx, s->g.ny);
-            }
-        }
+    if (status != ILSA_OK) {
+        return status;
     }
-    set_edges(s, cells, count);
-    return status;
+    loop l = {s, cells, dt, hold};
+    ilsai_team_run(s->threads, set_cells, &l, count, ILSAI_SHARE_FRONT);
+    if (ilsai_has_leakoff(s)) {
+        pack_records(s, cells, count);
+    }
+    ilsai_team_run(s->threads, set_seed_edges, &l, s->seed_count, ILSAI_SHARE_FRONT);
+    ilsai_team_run(s->threads, set_cell_edges, &l, count, ILSAI_SHARE_FRONT);
+    return wet_cells(s, cells, count);
 }
 
 /* What of a cell answers, and how, to an advance of the front or to a width. */
@@ -319,7 +374,8 @@ typedef struct answer {
 } answer;
 
 /* Derivatives by an advance of the front within the step. */
-static answer differentiate(ilsa_solver *s, const front_cell *c, double dt, double by_advance) {
+static answer differentiate(const ilsa_solver *s, const front_cell *c, double dt,
+                            double by_advance) {
     double small = ILSAI_DIFFERENCE * ilsai_grid_h(&s->g);
     front_cell moved = *c;
     moved.ell += small;
@@ -356,7 +412,8 @@ static void answer_to_seed(tip_response *r, const front_seed *seed, const answer
 }
 
 /* A front at rest answers with its stress intensity, (4.19); a moving one by moving. */
-static tip_response response_in(ilsa_solver *s, const front_cell *c, double dt, double by_advance) {
+static tip_response response_in(const ilsa_solver *s, const front_cell *c, double dt,
+                                double by_advance) {
     tip_response r = {.cell = c->cell};
     answer moving = differentiate(s, c, dt, by_advance), resting = {s->trial.width[c->cell], 0, 0};
     for (int p = 0; p < c->from.count; p++) {
@@ -386,16 +443,30 @@ static tip_response response_of_seed(const ilsa_solver *s, const front_seed *see
     return r;
 }
 
+static void respond_seeds(void *context, int first, int end) {
+    ilsa_solver *s = ((const loop *)context)->s;
+    for (int k = first; k < end; k++) {
+        s->responses[k] = response_of_seed(s, &s->seeds[k]);
+    }
+}
+
+/* A cell that is not wet answers to nothing. */
+static void respond_cells(void *context, int first, int end) {
+    const loop *l = context;
+    ilsa_solver *s = l->s;
+    for (int k = first; k < end; k++) {
+        const front_cell *c = &l->cells[k];
+        int wet = s->trial.kind[c->cell] != ILSA_CELL_EMPTY;
+        s->responses[s->seed_count + k] =
+            wet ? response_in(s, c, l->dt, s->by_advance[k]) : (tip_response){.cell = c->cell};
+    }
+}
+
 void ilsai_rim_respond(ilsa_solver *s, double dt) {
     int count;
     const front_cell *cells = ilsai_front_cells(s->march, &count);
-    s->response_count = 0;
-    for (int k = 0; k < s->seed_count; k++) {
-        s->responses[s->response_count++] = response_of_seed(s, &s->seeds[k]);
-    }
-    for (int k = 0; k < count; k++) {
-        if (s->trial.kind[cells[k].cell] != ILSA_CELL_EMPTY) {
-            s->responses[s->response_count++] = response_in(s, &cells[k], dt, s->by_advance[k]);
-        }
-    }
+    loop l = {s, cells, dt, 0};
+    s->response_count = s->seed_count + count;
+    ilsai_team_run(s->threads, respond_seeds, &l, s->seed_count, ILSAI_SHARE_FRONT);
+    ilsai_team_run(s->threads, respond_cells, &l, count, ILSAI_SHARE_FRONT);
 }

@@ -30,6 +30,7 @@ static ilsa_status check_options(const ilsa_solver_def *def) {
     status = status ? status : check_number("linear", (double)def->linear, 0, 2);
     status = status ? status : check_number("product", (double)def->product, 0, 2);
     status = status ? status : check_number("coarsen", def->coarsen, 0, 1);
+    status = status ? status : check_number("threads", def->threads, 0, ILSAI_THREADS);
     if (def->step_cells != 0) {
         status = status ? status : check_number("step_cells", def->step_cells, 0.01, 1);
     }
@@ -130,6 +131,18 @@ static ilsa_status allocate(ilsa_solver *s) {
     return ILSA_OK;
 }
 
+static ilsa_status start_threads(ilsa_solver *s) {
+    if (s->def.threads > 1) {
+        s->threads = ilsai_team_create(s->def.threads);
+        if (!s->threads) {
+            return ilsai_fail(ilsai_thread_error(), ILSA_ERR_MEMORY,
+                              "no memory for %d threads, or the system allows no more",
+                              s->def.threads);
+        }
+    }
+    return ILSA_OK;
+}
+
 static ilsa_status build(ilsa_solver *s, const ilsa_solver_def *def) {
     error_text *error = ilsai_thread_error();
     set_options(s, def);
@@ -147,7 +160,8 @@ static ilsa_status build(ilsa_solver *s, const ilsa_solver_def *def) {
                               : "no memory for the elasticity");
     }
     status = ilsai_solver_fill_stress(s);
-    return status == ILSA_OK ? ilsai_symmetry_check(s) : status;
+    status = status ? status : ilsai_symmetry_check(s);
+    return status ? status : start_threads(s);
 }
 
 ilsa_status ilsa_solver_create(const ilsa_solver_def *def, ilsa_solver **solver) {
@@ -178,6 +192,7 @@ void ilsa_solver_destroy(ilsa_solver **solver) {
         return;
     }
     ilsa_solver *s = *solver;
+    ilsai_team_destroy(&s->threads);
     ilsa_stress_destroy(&s->stress);
     ilsai_fields_destroy(&s->field);
     ilsai_fields_destroy(&s->trial);

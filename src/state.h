@@ -86,7 +86,8 @@ struct ilsa_solver {
     front_seed *seeds;
     double *distance, *next_distance;
     int seed_count, seed_capacity;
-    tip_response *responses; /* of the cells at the front in this pass */
+    tip_response
+        *responses;     /* of survey cells, and of cells that the march reached, in this pass */
     double *by_advance; /* of each cell that the march reached: what an advance adds to its width */
     int response_count, response_capacity;
     box trial_footprint;
@@ -96,6 +97,7 @@ struct ilsa_solver {
     coupled *flow;
     elasticity *elastic;
     anderson *mixer;
+    team *threads; /* that share the loops; NULL: the caller's own alone */
     error_text error;
 
     ilsa_front_point *front_points;

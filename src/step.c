@@ -70,6 +70,22 @@ static void copy_fields(const ilsa_solver *s, const box *b, fields *to, const fi
     copy_rows(s, b, to->kind, from->kind, sizeof *to->kind);
 }
 
+/* A loop over the survey cells of a step of dt. */
+typedef struct seed_loop {
+    ilsa_solver *s;
+    double dt;
+} seed_loop;
+
+static void share_seeds(team_function *function, ilsa_solver *s, double dt) {
+    seed_loop l = {s, dt};
+    ilsai_team_run(s->threads, function, &l, s->seed_count, ILSAI_SHARE_FRONT);
+}
+
+static void set_shapes(void *context, int first, int end) {
+    ilsa_solver *s = ((const seed_loop *)context)->s;
+    ilsai_shape_set(s, s->seeds + first, end - first);
+}
+
 static ilsa_status begin(ilsa_solver *s, double dt) {
     s->g = ilsai_solver_grid(s);
     s->region = ilsai_solver_region(s, &s->now.footprint);
@@ -78,7 +94,7 @@ static ilsa_status begin(ilsa_solver *s, double dt) {
     if (find_seeds(s) != ILSA_OK || ilsai_anderson_begin(s->mixer, s->seed_count) != ILSA_OK) {
         return ILSA_ERR_MEMORY;
     }
-    ilsai_shape_set(s, s->seeds, s->seed_count);
+    share_seeds(set_shapes, s, dt);
     return ilsai_rim_begin(s, dt);
 }
 
@@ -102,8 +118,10 @@ static void predict(ilsa_solver *s, double dt) {
     }
 }
 
-static void place_front(ilsa_solver *s, double dt) {
-    for (int k = 0; k < s->seed_count; k++) {
+static void place_seeds(void *context, int first, int end) {
+    ilsa_solver *s = ((const seed_loop *)context)->s;
+    double dt = ((const seed_loop *)context)->dt;
+    for (int k = first; k < end; k++) {
         front_seed *seed = &s->seeds[k];
         seed->s = s->distance[k];
         seed->V = (seed->s - seed->s0) / dt;
@@ -114,7 +132,7 @@ static void place_front(ilsa_solver *s, double dt) {
 
 /* Survey, tip and channel cells for the front where it is now. */
 static ilsa_status march(ilsa_solver *s, double dt, int hold) {
-    place_front(s, dt);
+    share_seeds(place_seeds, s, dt);
     ilsa_status status = ilsai_front_march(s->march, &s->g, &s->region, s->field.kind, s->seeds,
                                            s->seed_count, ilsai_solver_band(s), s->trial.level);
     return status == ILSA_OK ? ilsai_rim_set(s, dt, hold) : status;
@@ -154,19 +172,27 @@ static coupled_problem pose(ilsa_solver *s, double dt, double change) {
                                .mu_prime = s->material.mu_prime,
                                .linear = s->def.linear,
                                .response = s->responses,
-                               .response_count = s->response_count};
+                               .response_count = s->response_count,
+                               .threads = s->threads};
     double aim = is_nested(s) ? s->tolerance : fmax(0.3 * change, tolerance_now(s, 0));
     problem.tolerance = ILSAI_WIDTH_TOLERANCE * fmin(aim, 0.1);
     return problem;
 }
 
+static void survey_seeds(void *context, int first, int end) {
+    ilsa_solver *s = ((const seed_loop *)context)->s;
+    double dt = ((const seed_loop *)context)->dt;
+    for (int k = first; k < end; k++) {
+        s->next_distance[k] = bounded(&s->seeds[k], ilsai_survey_distance(s, &s->seeds[k], dt));
+    }
+}
+
 /* Where the widths want the front; returns the largest difference to where it is, in cells. */
 static double survey(ilsa_solver *s, double dt) {
     double largest = 0;
+    share_seeds(survey_seeds, s, dt);
     for (int k = 0; k < s->seed_count; k++) {
-        front_seed *seed = &s->seeds[k];
-        s->next_distance[k] = bounded(seed, ilsai_survey_distance(s, seed, dt));
-        double change = fabs(s->next_distance[k] - s->distance[k]) / seed->h;
+        double change = fabs(s->next_distance[k] - s->distance[k]) / s->seeds[k].h;
         largest = change > largest || isnan(change) ? change : largest;
     }
     return largest;

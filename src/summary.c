@@ -170,6 +170,7 @@ ilsa_status ilsa_get_model(const ilsa_solver *solver, ilsa_model *model) {
                       .tip = solver->def.tip,
                       .stress_varies = ilsai_stress_varies(solver->stress),
                       .level = solver->def.level,
+                      .threads = solver->def.threads > 1 ? solver->def.threads : 1,
                       .step_cells = solver->step_cells,
                       .tolerance = solver->tolerance};
     out.symmetry = g.mirror_x && g.mirror_y ? ILSA_SYMMETRY_XY

@@ -103,6 +103,13 @@
     { 0.75, 0.6, 0.5, 0.25, 0.1 }
 #define ILSAI_LEVEL_TOLERANCE                                                                      \
     { 3e-2, 5e-3, 1e-3, 1e-4, 1e-5 }
+/* Threads: the most that one solver may have. */
+#define ILSAI_THREADS 64
+/* Threads: turns of a loop over cells, and over cells at the front, below which a part of it is not
+ * worth sharing: a few microseconds. */
+#define ILSAI_SHARE_CELLS 512
+#define ILSAI_SHARE_FRONT 8
+
 /* Smallest tolerance of the front, in cells: rounding of a distance. */
 #define ILSAI_TOLERANCE_LEAST 1e-12
 /* Tolerance of the widths relative to that of the front: w changes half as much as s. */

@@ -1,8 +1,8 @@
 /*
  * Allocations that fail on demand, for one test program: its own and those of the library that is
  * linked into it, not those inside shared libraries (some kernels of OpenBLAS do not check theirs).
- * Only where the C library offers its own entries beside malloc, and not under AddressSanitizer,
- * which has a malloc of its own: there CAN_FAIL is not defined.
+ * Only where the C library offers its own entries beside malloc, and not under AddressSanitizer
+ * or ThreadSanitizer, which have a malloc of their own: there CAN_FAIL is not defined.
  */
 #ifndef TESTS_FAILING_MALLOC_H
 #define TESTS_FAILING_MALLOC_H
@@ -11,12 +11,13 @@
 #include <stdlib.h>
 
 #if defined(__has_feature)
-#if __has_feature(address_sanitizer)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
 #define SANITIZED 1
 #endif
 #endif
 
-#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(SANITIZED)
+#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) &&       \
+    !defined(SANITIZED)
 #define CAN_FAIL 1
 
 static int allocations_left = -1; /* how many succeed from now on; negative: all */

@@ -114,7 +114,8 @@ static void work_out(scene *s) {
     assert_true(s->a.count < 4000);
     assert_int_equal(ilsai_flow_reserve(&s->f, s->a.count), ILSA_OK);
     ilsai_flow_set(&s->f, &s->a, &s->g, s->width, s->width_old, s->pressure, dt_over_mu);
-    ilsai_flow_gain(&s->f, &s->a, s->pressure, gain);
+    for (int k = 0; k < s->a.count; k++)
+        gain[k] = ilsai_flow_gain_of(&s->f, &s->a, s->pressure, k);
     for (int k = 0; k < s->a.count; k++) {
         s->gain[s->a.cell[k]] = gain[k];
     }

@@ -3,7 +3,8 @@
  *
  * A solver copies the mesh, material, stress and sources that it is created with and owns all that
  * changes afterwards, so those handles may be destroyed or reused at once. Solvers are independent
- * of each other; one solver is used by one thread at a time. Units are any consistent set.
+ * of each other; one solver is used by one thread at a time, and has threads of its own only where
+ * its definition asks for them. Units are any consistent set.
  */
 #ifndef ILSA_SOLVER_H
 #define ILSA_SOLVER_H
@@ -83,6 +84,7 @@ typedef struct ilsa_solver_def {
     ilsa_linear_solver linear;      /* default ILSA_LINEAR_AUTO */
     ilsa_product product;           /* default ILSA_PRODUCT_AUTO */
     int coarsen;                    /* 1: ilsa_advance coarsens the mesh at its edge; default 0 */
+    int threads;       /* 1 .. 64 that a step uses, the caller's included; default 0: as 1 */
     double step_cells; /* front advance of a suggested step, in cells, 0.01 .. 1; 0: level */
     double tolerance;  /* of the front, in cells, 1e-12 .. 0.1; 0: by level */
     double dt_max;     /* longest suggested step, time, > 0; 0: no limit */
@@ -94,9 +96,9 @@ ILSA_API ilsa_solver_def ilsa_solver_def_default(void);
 /*
  * Makes a solver without a fracture. On success *solver is a new handle owned by the caller, to be
  * destroyed with ilsa_solver_destroy; otherwise *solver is NULL.
- * ILSA_ERR_NULL, ILSA_ERR_VALUE, ILSA_ERR_MEMORY, ILSA_ERR_MISMATCH (per-cell stress of another
- * mesh, symmetry asked for that the scene has not, ILSA_TIP_TOUGHNESS for a material that has none,
- * a product that the library was built without).
+ * ILSA_ERR_NULL, ILSA_ERR_VALUE, ILSA_ERR_MEMORY (also where the system gives no more threads),
+ * ILSA_ERR_MISMATCH (per-cell stress of another mesh, symmetry asked for that the scene has not,
+ * ILSA_TIP_TOUGHNESS for a material that has none, a product that the library was built without).
  */
 ILSA_API ilsa_status ilsa_solver_create(const ilsa_solver_def *def, ilsa_solver **solver);
 
@@ -256,6 +258,7 @@ typedef struct ilsa_model {
     ilsa_symmetry symmetry;                 /* used now: NONE, X, Y or XY */
     ilsa_product product;                   /* FFT or BLAS */
     int level;
+    int threads;                  /* 1 .. 64 */
     double step_cells, tolerance; /* as set by the level or the definition */
 } ilsa_model;
 
