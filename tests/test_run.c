@@ -349,11 +349,11 @@ static void nothing_modelled_in_vain(void **state) {
 
 static void options_are_heeded(void **state) {
     (void)state;
-    static const char *const level[] = {"level                 1 "};
+    static const char *const level[] = {"level                 1 ", "threads               2\n"};
     write_scene("t_end = 14\noutput_times = 11, 14\n", "t_end = 11\n");
-    assert_int_equal(run_other("--level 1 --quiet --out=deep/er/level"), 0);
+    assert_int_equal(run_other("--level 1 --threads 2 --quiet --out=deep/er/level"), 0);
     assert_string_equal(output, "");
-    assert_says("deep/er/level/summary.txt", level, 1);
+    assert_says("deep/er/level/summary.txt", level, 2);
     assert_int_equal(run_other("--quiet"), 0);
     assert_true(program_exists("other.out/history.csv"));
 }

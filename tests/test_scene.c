@@ -39,7 +39,8 @@ static const char good[] = "[material]\n"        /* 1 */
                            "dt_max = 5\n"        /* 25 */
                            "level = 3\n"         /* 26 */
                            "coarsen = no\n"      /* 27 */
-                           "tip = full\n";       /* 28 */
+                           "tip = full\n"        /* 28 */
+                           "threads = 2\n";      /* 29 */
 
 typedef struct bad_scene {
     const char *name;
@@ -268,7 +269,15 @@ static const bad_scene scenes[] = {
      "28: [run] tip = : must be full, toughness-viscosity or toughness"},
     {"run: unknown key", "coarsen = no\n", "refine = no\n",
      "27: [run] refine = no: unknown key; must be one of t_end, output_times, dt_initial, dt_max, "
-     "level, coarsen, tip"},
+     "level, coarsen, tip, threads"},
+    {"run threads: none", "threads = 2\n", "threads = 0\n",
+     "29: [run] threads = 0: must be a whole number in 1 .. 64"},
+    {"run threads: too many", "threads = 2\n", "threads = 65\n",
+     "29: [run] threads = 65: must be a whole number in 1 .. 64"},
+    {"run threads: not whole", "threads = 2\n", "threads = 1.5\n",
+     "29: [run] threads = 1.5: not a whole number; must be a whole number in 1 .. 64"},
+    {"run threads: not a number", "threads = 2\n", "threads = all\n",
+     "29: [run] threads = all: not a number; must be a whole number in 1 .. 64"},
 
     {"given twice: a key", "mu = 0.1\n", "mu = 0.1\nmu = 0.1\n",
      "5: [material] mu = 0.1: given twice, first on line 4"},
@@ -277,7 +286,7 @@ static const bad_scene scenes[] = {
     {"unknown section", "[run]\n", "[rock]\ndensity = 2700\n[run]\n",
      "21: [rock]: unknown section; must be material, mesh, stress, injection, injection.2 .. "
      "injection.1000, initial or run"},
-    {"missing section", "[initial]\nradius = 5\n", "", "26: [initial]: missing section"},
+    {"missing section", "[initial]\nradius = 5\n", "", "27: [initial]: missing section"},
     {"key before the first section", "[material]\n", "level = 3\n[material]\n",
      "1: level stands before the first [section]"},
     {"neither heading nor key", "mu = 0.1\n", "viscous\nmu = 0.1\n",
@@ -395,6 +404,13 @@ static void bad_usage_is_refused(void **state) {
     assert_non_null(strstr(output, "ilsa-run: one scene file must be given\n"));
     assert_int_equal(program_run("ilsa-run scene.ini --level 6", output, sizeof output), 2);
     assert_non_null(strstr(output, "ilsa-run: --level must be in 1 .. 5, not 6\n"));
+    static const char *const threads[] = {"0", "65", "two", "2x", "-1", "''"};
+    for (int k = 0; k < 6; k++) {
+        char command[80];
+        snprintf(command, sizeof command, "ilsa-run scene.ini --threads %s", threads[k]);
+        assert_int_equal(program_run(command, output, sizeof output), 2);
+        assert_non_null(strstr(output, "ilsa-run: --threads must be in 1 .. 64, not "));
+    }
     assert_int_equal(program_run("ilsa-run scene.ini --out ''", output, sizeof output), 2);
     assert_non_null(strstr(output, "ilsa-run: --out must name a directory\n"));
     assert_int_equal(program_run("ilsa-run scene.ini --fast", output, sizeof output), 2);

@@ -53,7 +53,8 @@ const section_def sections[SECTION_COUNT] = {
       {"dt_max", KEY_NUMBER, POSITIVE},
       {"level", KEY_WHOLE, 1, 5, 0, {NULL}},
       {"coarsen", KEY_CHOICE, 0, 0, 0, {"no", "yes"}},
-      {"tip", KEY_CHOICE, 0, 0, 0, {"full", "toughness-viscosity", "toughness"}}}},
+      {"tip", KEY_CHOICE, 0, 0, 0, {"full", "toughness-viscosity", "toughness"}},
+      {"threads", KEY_WHOLE, 1, 64, 0, {NULL}}}},
 };
 /* clang-format on */
 

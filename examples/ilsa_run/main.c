@@ -9,14 +9,15 @@
 #include <string.h>
 
 static const char usage[] =
-    "usage: ilsa-run SCENE.ini [--out DIR] [--level N] [--quiet]\n"
+    "usage: ilsa-run SCENE.ini [--out DIR] [--level N] [--threads N] [--quiet]\n"
     "  --out DIR    where the results go; SCENE.out without it. Earlier results are replaced.\n"
     "  --level N    1 fast .. 5 accurate, instead of the scene's own\n"
+    "  --threads N  1 .. 64, instead of the scene's own; results do not depend on it\n"
     "  --quiet      no progress, no closing line\n";
 
 typedef struct options {
     const char *scene, *out;
-    int level; /* 0: the scene's */
+    int level, threads; /* 0: the scene's */
     int quiet, help;
 } options;
 
@@ -25,12 +26,18 @@ static int bad_usage(const char *message, const char *word) {
     return 0;
 }
 
+/* A whole number 1 .. 64, or 0. */
+static int read_threads(const char *text) {
+    char *end;
+    long threads = strtol(text, &end, 10);
+    return *end || threads < 1 || threads > 64 ? 0 : (int)threads;
+}
+
 static int read_options(int argc, char **argv, options *o) {
-    static const struct option known[] = {{"out", required_argument, NULL, 'o'},
-                                          {"level", required_argument, NULL, 'l'},
-                                          {"quiet", no_argument, NULL, 'q'},
-                                          {"help", no_argument, NULL, 'h'},
-                                          {NULL, 0, NULL, 0}};
+    static const struct option known[] = {
+        {"out", required_argument, NULL, 'o'},     {"level", required_argument, NULL, 'l'},
+        {"threads", required_argument, NULL, 't'}, {"quiet", no_argument, NULL, 'q'},
+        {"help", no_argument, NULL, 'h'},          {NULL, 0, NULL, 0}};
     int c;
     while ((c = getopt_long(argc, argv, "", known, NULL)) != -1) {
         if (c == 'o')
@@ -39,6 +46,10 @@ static int read_options(int argc, char **argv, options *o) {
             o->level = optarg[0] - '0';
         else if (c == 'l')
             return bad_usage("--level must be in 1 .. 5, not ", optarg);
+        else if (c == 't' && read_threads(optarg))
+            o->threads = read_threads(optarg);
+        else if (c == 't')
+            return bad_usage("--threads must be in 1 .. 64, not ", optarg);
         else if (c == 'q')
             o->quiet = 1;
         else if (c == 'h')
@@ -80,6 +91,8 @@ int main(int argc, char **argv) {
         return EXIT_BAD_SCENE;
     if (o.level)
         sc.level = o.level;
+    if (o.threads)
+        sc.threads = o.threads;
     char *directory = o.out ? strdup(o.out) : default_directory(o.scene);
     int exit_status = directory ? run_scene(&sc, directory, o.quiet) : EXIT_RUN_FAILED;
     free(directory);

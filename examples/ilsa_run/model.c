@@ -57,6 +57,7 @@ static ilsa_status make_solver(const scene *sc, const parts *p, ilsa_solver **so
     def.tip = sc->tip;
     def.symmetry = sc->symmetry;
     def.coarsen = sc->coarsen;
+    def.threads = sc->threads;
     def.dt_max = sc->dt_max;
     return ilsa_solver_create(&def, solver);
 }

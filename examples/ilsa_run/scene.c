@@ -236,6 +236,7 @@ static void take_run(draft *d, scene *sc, section *s) {
     sc->level = (int)number_or(s, RUN_LEVEL, 3);
     sc->coarsen = (int)number_or(s, RUN_COARSEN, 0);
     sc->tip = tips[(int)number_or(s, RUN_TIP, 0)];
+    sc->threads = (int)number_or(s, RUN_THREADS, 1);
     sc->output_line = s->values[RUN_OUTPUT_TIMES].line;
     sc->output_times = take_numbers(s, RUN_OUTPUT_TIMES, &sc->output_count);
     if (sc->output_times)

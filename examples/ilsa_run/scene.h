@@ -27,7 +27,7 @@ typedef struct scene {
     double t_end, dt_initial, dt_max; /* dt_*: 0: not limited */
     double *output_times;
     int output_count;
-    int level, coarsen;
+    int level, coarsen, threads;
     ilsa_tip_model tip;
     int symmetry_line, initial_line, t_end_line, output_line; /* for messages */
 } scene;

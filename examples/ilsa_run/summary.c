@@ -50,6 +50,7 @@ static void put_model(FILE *s, const scene *sc, const facts *f) {
                 ? part[m->symmetry]
                 : part[ILSA_SYMMETRY_NONE]);
     fprintf(s, "elasticity product    %s\n", m->product == ILSA_PRODUCT_FFT ? "FFT" : "BLAS");
+    fprintf(s, "threads               %d\n", m->threads);
     fprintf(s, "sources               %d\n\n", sc->source_count);
 }
 
