@@ -5,7 +5,7 @@
 #include <string.h>
 
 /* Rows or columns that are transformed at a time, whoever does it: the bits depend on it. */
-#define FFT_PART 8
+#define FFT_PART 16
 /* Cells of the box below which a part is not worth sharing. */
 #define FFT_LEAST 500
 

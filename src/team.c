@@ -1,5 +1,6 @@
 #include "team.h"
 
+#include "clock.h"
 #include <pthread.h>
 #include <sched.h>
 #include <signal.h>
@@ -9,7 +10,12 @@
 
 /* Parts of a loop per thread: uneven turns, and threads that come late, even out. */
 #define TEAM_PARTS 4
-/* Looks at what there is to do before a thread goes to sleep: some tens of microseconds. */
+/*
+ * Seconds that a thread looks for work before it goes to sleep. Longer than what a step does
+ * between two loops: a core that idles, a virtual one above all, takes as long to wake up.
+ */
+#define TEAM_AWAKE 1e-3
+/* Looks at whether the others are done before the caller gives way to them. */
 #define TEAM_LOOKS 2000
 
 #if defined(__x86_64__) || defined(__i386__)
@@ -104,7 +110,7 @@ static void *worker_main(void *argument) {
     team *t = argument;
     while (!atomic_load(&t->ending)) {
         work(t, 0);
-        for (int look = 0; look < TEAM_LOOKS && !has_news(t); look++) {
+        for (double start = ilsai_clock(); !has_news(t) && ilsai_clock() - start < TEAM_AWAKE;) {
             team_pause();
         }
         if (!has_news(t)) {

@@ -71,7 +71,7 @@ static void loops_may_come_at_any_time(void **state) {
     for (int k = 0; k < 200; k++) {
         check_loop(threads, 40, 1);
         if (k % 2)
-            pause_for(k * 2000L);
+            pause_for(k * 20000L);
     }
     ilsai_team_destroy(&threads);
 }
