@@ -161,11 +161,12 @@ static void two_solvers(int repeats) {
 }
 
 int main(int argc, char **argv) {
-    int repeats = argc > 1 ? atoi(argv[1]) : REPEATS;
-    if (repeats < 1 || repeats > REPEATS_MAX) {
+    long asked = argc > 1 ? strtol(argv[1], NULL, 10) : REPEATS;
+    if (asked < 1 || asked > REPEATS_MAX) {
         fprintf(stderr, "usage: bench_threads [1 .. %d]\n", REPEATS_MAX);
         return 2;
     }
+    int repeats = (int)asked;
     one_solver(repeats);
     two_solvers(repeats);
     return 0;

@@ -86,7 +86,7 @@ ilsa_status ilsai_rim_begin(ilsa_solver *s, double dt) {
     box part = ilsai_box_fold(&s->g, &s->region);
     loop l = {s, NULL, dt, 0};
     int columns = (int)ilsai_box_columns(&part), rows = (int)ilsai_box_rows(&part);
-    ilsai_team_run(s->threads, begin_rows, &l, rows, 1 + ILSAI_SHARE_CELLS / columns);
+    ilsai_team_run(s->threads, begin_rows, &l, rows, 1 + ILSAI_SHARE_CELLS / (columns + 1));
     ilsai_elasticity_set_edge(s->elastic);
     forget_wild_pressures(s, &part);
     ilsa_status status = check_sources(s);
