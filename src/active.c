@@ -19,7 +19,7 @@ ilsa_status ilsai_active_create(active *a, const ilsa_mesh_def *mesh) {
 
 void ilsai_active_destroy(active *a) {
     free(a->cell);
-    free(a->tip);
+    free(a->unknown);
     free(a->neighbour);
     free(a->slot);
     memset(a, 0, sizeof *a);
@@ -32,11 +32,11 @@ static ilsa_status reserve(active *a, size_t count) {
     size_t capacity = count + count / 2 + 64;
     int *cell = realloc(a->cell, capacity * sizeof *cell);
     a->cell = cell ? cell : a->cell;
-    unsigned char *tip = realloc(a->tip, capacity);
-    a->tip = tip ? tip : a->tip;
+    unsigned char *unknown = realloc(a->unknown, capacity);
+    a->unknown = unknown ? unknown : a->unknown;
     int *neighbour = realloc(a->neighbour, GRID_FACES * capacity * sizeof *neighbour);
     a->neighbour = neighbour ? neighbour : a->neighbour;
-    if (!cell || !tip || !neighbour) {
+    if (!cell || !unknown || !neighbour) {
         return ILSA_ERR_MEMORY;
     }
     a->capacity = (int)capacity;
@@ -53,7 +53,7 @@ static void forget(active *a) {
 static void add(active *a, int cell, unsigned char kind) {
     if (kind != ILSA_CELL_EMPTY) {
         a->cell[a->count] = cell;
-        a->tip[a->count] = kind == ILSA_CELL_TIP;
+        a->unknown[a->count] = kind == ILSA_CELL_TIP ? UNKNOWN_PRESSURE : UNKNOWN_WIDTH;
         a->slot[cell] = a->count++;
     }
 }

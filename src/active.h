@@ -5,12 +5,20 @@
 #include "grid.h"
 #include <ilsa/status.h>
 
+/* What the coupled solve finds in an active cell; the width of the others is given. */
+enum {
+    UNKNOWN_WIDTH,    /* an open channel cell; its pressure follows from the widths */
+    UNKNOWN_LEAK,     /* a cell that drains, see contact.h: less than the full leak-off */
+    UNKNOWN_PRESSURE, /* a tip cell */
+    UNKNOWN_CONTACT   /* a closed cell, see contact.h: the pressure */
+};
+
 typedef struct active {
     int count, capacity;
-    int *cell;          /* mesh index of each */
-    unsigned char *tip; /* 1: tip cell, its unknown is the pressure; 0: channel cell, the width */
-    int *neighbour;     /* GRID_FACES per cell: number of the active cell there, or -1 */
-    int *slot;          /* over the mesh: number of the active cell, or -1 */
+    int *cell;              /* mesh index of each */
+    unsigned char *unknown; /* when set: UNKNOWN_PRESSURE in tip cells, elsewhere UNKNOWN_WIDTH */
+    int *neighbour;         /* GRID_FACES per cell: number of the active cell there, or -1 */
+    int *slot;              /* over the mesh: number of the active cell, or -1 */
     size_t mesh_cells;
     box footprint;
 } active;

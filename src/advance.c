@@ -20,10 +20,17 @@ static double front_rate(const ilsa_solver *s) {
     return largest;
 }
 
+/* The time in which the fracture loses a part of its volume, or gains as much as it has. */
+static double until_changed(const ilsa_solver *s) {
+    double rate = ilsai_injection_rate(s) - s->now.leak_rate;
+    double part = rate < 0 ? ILSAI_DT_LOSS : 1;
+    return rate != 0 ? part * s->now.fracture / fabs(rate) : INFINITY;
+}
+
 static double suggestion(const ilsa_solver *s) {
     double rate = front_rate(s), resting = ILSAI_DT_RESTING * s->now.time;
     double dt = rate * resting > s->step_cells ? s->step_cells / rate : resting;
-    dt = fmin(dt, s->now.dt_limit);
+    dt = fmin(fmin(dt, until_changed(s)), s->now.dt_limit);
     return s->def.dt_max > 0 ? fmin(dt, s->def.dt_max) : dt;
 }
 
@@ -63,7 +70,6 @@ static void add_report(ilsa_report *sum, const ilsa_report *r) {
 static const char *reason(ilsa_status status) {
     return status == ILSA_STEP_REJECTED    ? "no solution was found"
            : status == ILSA_STEP_TOO_LARGE ? "the front would move more than the cells one step may"
-           : status == ILSA_CLOSED         ? "the fracture would close"
            : status == ILSA_ERR_MEMORY     ? "no memory"
                                            : NULL;
 }
@@ -112,7 +118,7 @@ ilsa_status ilsa_step(ilsa_solver *solver, double dt, ilsa_report *report) {
 }
 
 static int try_again(ilsa_status status) {
-    return status == ILSA_STEP_REJECTED || status == ILSA_STEP_TOO_LARGE || status == ILSA_CLOSED;
+    return status == ILSA_STEP_REJECTED || status == ILSA_STEP_TOO_LARGE;
 }
 
 /*
@@ -136,7 +142,7 @@ static ilsa_status step_until_accepted(ilsa_solver *s, double t_limit, ilsa_repo
         int stalled = s->now.dt_limit < ILSAI_DT_SMALLEST * s->now.time;
         if (!try_again(status) || stalled) {
             s->now.dt_limit = limit;
-            return try_again(status) && status != ILSA_CLOSED ? ILSA_STALLED : status;
+            return try_again(status) ? ILSA_STALLED : status;
         }
     }
 }
@@ -160,6 +166,21 @@ static ilsa_status check_limit(ilsa_solver *s, const char *name, double t) {
                             s->now.time);
     }
     return status;
+}
+
+ilsa_status ilsa_wait(ilsa_solver *solver, double t) {
+    ilsa_status status = check_limit(solver, "t", t);
+    if (status != ILSA_OK) {
+        return status;
+    }
+    int open = ilsai_open_cells(solver);
+    if (open > 0 || ilsai_injection_rate(solver) > 0) {
+        return ilsai_fail(&solver->error, ILSA_ERR_STATE,
+                          "%d cells are open and %g is injected: only a step moves the clock", open,
+                          ilsai_injection_rate(solver));
+    }
+    solver->now.time = t;
+    return ILSA_OK;
 }
 
 ilsa_status ilsa_advance_one(ilsa_solver *solver, double t_limit, ilsa_report *report) {

@@ -14,10 +14,13 @@ struct coupled {
     jacobian matrix;
     gmres *krylov;
     double *rhs, *step;
-    double *shift; /* change of the source terms at the front in this solve */
-    double *lift;  /* change of the pressures there for the front's move in this solve */
+    double *shift;  /* change of the source terms at the front in this solve */
+    double *lift;   /* change of the pressures there for the front's move in this solve */
+    double *caught; /* of closed cells: the pressure with which they closed or entered the solve */
+    double *stress; /* of channel cells: the pressure that holds them at their width, (4.7) */
     int capacity;
     int response_capacity;
+    int closed;      /* cells that are closed or drain */
     double residual; /* of the last linear solve, relative */
 };
 
@@ -47,6 +50,8 @@ void ilsai_coupled_destroy(coupled **c) {
         free((*c)->step);
         free((*c)->shift);
         free((*c)->lift);
+        free((*c)->stress);
+        free((*c)->caught);
         free(*c);
         *c = NULL;
     }
@@ -71,14 +76,30 @@ static ilsa_status reserve(coupled *c, int count) {
         c->shift = shift ? shift : c->shift;
         double *lift = realloc(c->lift, capacity * sizeof *lift);
         c->lift = lift ? lift : c->lift;
+        double *stress = realloc(c->stress, capacity * sizeof *stress);
+        c->stress = stress ? stress : c->stress;
+        double *caught = realloc(c->caught, capacity * sizeof *caught);
+        c->caught = caught ? caught : c->caught;
         double *edge = realloc(c->matrix.edge, capacity * sizeof *edge);
         c->matrix.edge = edge ? edge : c->matrix.edge;
-        if (!rhs || !step || !shift || !lift || !edge) {
+        if (!rhs || !step || !shift || !lift || !stress || !caught || !edge) {
             return ILSA_ERR_MEMORY;
         }
         c->capacity = (int)capacity;
     }
     return ILSA_OK;
+}
+
+static contact contact_of(coupled *c, const coupled_problem *problem, int late) {
+    return (contact){.field = problem->contact,
+                     .cells = &c->cells,
+                     .old = problem->width_old,
+                     .shift = c->shift,
+                     .stress = c->stress,
+                     .caught = c->caught,
+                     .width = problem->width,
+                     .pressure = problem->pressure,
+                     .late = late};
 }
 
 /* A loop over the active cells. */
@@ -107,13 +128,16 @@ static void set_images(void *context, int first, int end) {
 }
 
 static void add_pressures(void *context, int first, int end) {
-    const coupled *c = ((const loop *)context)->c;
+    coupled *c = ((const loop *)context)->c;
     const coupled_problem *problem = ((const loop *)context)->problem;
     for (int k = first; k < end; k++) {
         int cell = c->cells.cell[k];
-        if (!c->cells.tip[k]) {
-            problem->pressure[cell] = problem->sigma[cell] + c->matrix.pressure[cell] +
-                                      c->matrix.edge[k] * problem->width[cell] + c->lift[k];
+        if (c->cells.unknown[k] != UNKNOWN_PRESSURE) {
+            c->stress[k] = problem->sigma[cell] + c->matrix.pressure[cell] +
+                           c->matrix.edge[k] * problem->width[cell] + c->lift[k];
+        }
+        if (c->cells.unknown[k] < UNKNOWN_PRESSURE) {
+            problem->pressure[cell] = c->stress[k];
         }
     }
 }
@@ -135,8 +159,13 @@ static void balance_volumes(void *context, int first, int end) {
     for (int k = first; k < end; k++) {
         int cell = c->cells.cell[k];
         double gain = ilsai_flow_gain_of(&c->fluid, &c->cells, problem->pressure, k);
-        c->rhs[k] = gain + (problem->gain[cell] + c->shift[k] -
-                            (problem->width[cell] - problem->width_old[cell]));
+        double source = problem->gain[cell] + c->shift[k];
+        source += problem->contact.relief ? problem->contact.relief[cell] : 0;
+        c->rhs[k] = gain + (source - (problem->width[cell] - problem->width_old[cell]));
+        if (c->cells.unknown[k] == UNKNOWN_CONTACT) {
+            c->rhs[k] -= ilsai_jacobian_without_width(&c->matrix, k) *
+                         (problem->pressure[cell] - c->caught[k]);
+        }
     }
 }
 
@@ -154,45 +183,140 @@ static ilsa_status solve_iterative(coupled *c, coupled_counts *counts) {
     }
     gmres_result result = ilsai_gmres_solve(
         c->krylov, (size_t)c->cells.count, ilsai_jacobian_multiply, ilsai_jacobian_precondition,
-        &c->matrix, c->rhs, c->step, ILSAI_GMRES_TOLERANCE, ILSAI_GMRES_ITERATIONS);
+        &c->matrix, c->rhs, c->step, c->closed > 0 ? ILSAI_GMRES_CONTACT : ILSAI_GMRES_TOLERANCE,
+        ILSAI_GMRES_ITERATIONS);
     counts->krylov += result.iterations;
     c->residual = result.residual;
     return result.converged ? ILSA_OK : ILSA_STEP_REJECTED;
 }
 
-/* The largest part of the Newton step, at most 1, that leaves every width positive. */
+/*
+ * The largest part of the Newton step, at most 1, that leaves every width positive; the cells that
+ * are nearly closed have contact to see to that.
+ */
 static double step_length(const coupled *c, const coupled_problem *problem) {
-    double length = 1;
+    double length = 1, nearly = ILSAI_NEARLY_CLOSED * problem->contact.closure_width;
     for (int k = 0; k < c->cells.count; k++) {
         double w = problem->width[c->cells.cell[k]];
-        if (!c->cells.tip[k] && -c->step[k] * length > ILSAI_WIDTH_DROP * w) {
+        if (c->cells.unknown[k] == UNKNOWN_WIDTH && w > nearly &&
+            -c->step[k] * length > ILSAI_WIDTH_DROP * w) {
             length = ILSAI_WIDTH_DROP * w / -c->step[k];
         }
     }
     return length;
 }
 
-/* Takes the step; returns the largest change of width over the largest width, NaN if not finite. */
-static double take_step(const coupled *c, const coupled_problem *problem, double length) {
-    double change = 0, largest = 0, sum = 0;
+/* Changes the unknown of active cell k, and what of the cell answers to the others'. */
+static void move_cell(const coupled *c, const coupled_problem *problem, int k, double length) {
+    int cell = c->cells.cell[k];
+    double delta = length * c->step[k], *width = &problem->width[cell];
+    switch (c->cells.unknown[k]) {
+    case UNKNOWN_WIDTH:
+        *width += delta;
+        c->lift[k] += length * ilsai_jacobian_edge_pressure(&c->matrix, k, c->step);
+        break;
+    case UNKNOWN_LEAK:
+        problem->contact.relief[cell] += delta;
+        break;
+    default:
+        problem->pressure[cell] += delta;
+        delta = length * ilsai_jacobian_tip_width(&c->matrix, k, c->step);
+        *width = fmax(*width + delta, (1 - ILSAI_WIDTH_DROP) * *width);
+    }
+    c->shift[k] += length * ilsai_jacobian_tip_gain(&c->matrix, k, c->step);
+}
+
+/* What a Newton step has done. */
+typedef struct progress {
+    double change; /* the largest of a width, or of what leaks, over the largest width, or NaN */
+    int switched;  /* cells that have closed or opened */
+} progress;
+
+/*
+ * Whether a late solve has gone too far: leak-off beyond its bounds against the largest width, or
+ * the pressure in a closed cell beyond the closure stress against the largest net pressure.
+ */
+static int is_forced(coupled *c, const coupled_problem *problem) {
+    contact faces = contact_of(c, problem, 1);
+    double net = 0, width = 0, excess = 0, violation = 0;
     for (int k = 0; k < c->cells.count; k++) {
         int cell = c->cells.cell[k];
-        double delta = length * c->step[k];
-        sum += delta;
-        c->shift[k] += length * ilsai_jacobian_tip_gain(&c->matrix, k, c->step);
-        if (c->cells.tip[k]) {
-            double w = problem->width[cell];
-            double answer = length * ilsai_jacobian_tip_width(&c->matrix, k, c->step);
-            problem->width[cell] = fmax(w + answer, (1 - ILSAI_WIDTH_DROP) * w);
-            problem->pressure[cell] += delta;
-        } else {
-            problem->width[cell] += delta;
-            c->lift[k] += length * ilsai_jacobian_edge_pressure(&c->matrix, k, c->step);
-            change = fabs(delta) > change ? fabs(delta) : change;
-            largest = problem->width[cell] > largest ? problem->width[cell] : largest;
+        violation = fmax(violation, ilsai_contact_violation(&faces, k));
+        if (c->cells.unknown[k] == UNKNOWN_WIDTH) {
+            net = fmax(net, fabs(problem->pressure[cell] - problem->sigma[cell]));
+            width = fmax(width, problem->width[cell]);
+        } else if (c->cells.unknown[k] == UNKNOWN_CONTACT) {
+            excess = fmax(excess, problem->pressure[cell] - c->stress[k]);
         }
     }
-    return isfinite(sum) && largest > 0 ? change / largest : NAN;
+    return excess > ILSAI_CONTACT_FORCED * net || violation > ILSAI_CONTACT_FORCED * width;
+}
+
+/* Cells that are closed or drain. */
+static int count_closed(const coupled *c) {
+    int count = 0;
+    for (int k = 0; k < c->cells.count; k++) {
+        int unknown = c->cells.unknown[k];
+        count += unknown == UNKNOWN_LEAK || unknown == UNKNOWN_CONTACT;
+    }
+    return count;
+}
+
+static progress take_step(coupled *c, const coupled_problem *problem, double length, int late) {
+    contact faces = contact_of(c, problem, late);
+    double change = 0, largest = 0, sum = 0;
+    int switched = 0;
+    for (int k = 0; k < c->cells.count; k++) {
+        double delta = length * c->step[k], *width = &problem->width[c->cells.cell[k]];
+        sum += delta;
+        move_cell(c, problem, k, length);
+        if (c->cells.unknown[k] != UNKNOWN_PRESSURE) {
+            largest = *width > largest ? *width : largest;
+        }
+        if (c->cells.unknown[k] < UNKNOWN_PRESSURE) {
+            change = fabs(delta) > change ? fabs(delta) : change;
+            switched += faces.field.state && ilsai_contact_bound(&faces, k);
+        } else if (c->cells.unknown[k] == UNKNOWN_CONTACT) {
+            switched += ilsai_contact_lifts(&faces, k);
+        }
+    }
+    return (progress){isfinite(sum) && largest > 0 ? change / largest : NAN, switched};
+}
+
+/*
+ * The flow into a cell that opens is large for its width until the pressures have met: it would
+ * make Newton's step a negative one, so that the first goes without its answer to the width.
+ */
+static void hold_slopes(const coupled *c, int k) {
+    for (int face = 0; face < GRID_FACES; face++) {
+        int at = GRID_FACES * k + face, other = c->cells.neighbour[at];
+        c->fluid.slope[at] = 0;
+        for (int back = 0; other >= 0 && back < GRID_FACES; back++) {
+            int from = GRID_FACES * other + back;
+            c->fluid.slope[from] *= c->cells.neighbour[from] != k;
+        }
+    }
+}
+
+static void hold_opening(const coupled *c, const coupled_problem *problem) {
+    for (int k = 0; k < c->cells.count; k++) {
+        if (problem->contact.state[c->cells.cell[k]] == CONTACT_OPENING) {
+            hold_slopes(c, k);
+        }
+    }
+}
+
+/* Opens the closed cells that are to open with the widths as they are. */
+static int reopen(coupled *c, const coupled_problem *problem, int late) {
+    contact faces = contact_of(c, problem, late);
+    int opened = 0;
+    for (int k = 0; k < c->cells.count; k++) {
+        if (c->cells.unknown[k] == UNKNOWN_CONTACT && ilsai_contact_lifts(&faces, k)) {
+            ilsai_contact_reopen(&faces, k);
+            opened++;
+        }
+    }
+    return opened;
 }
 
 static int choose_dense(const coupled *c, const coupled_problem *problem) {
@@ -205,31 +329,50 @@ static double error_left(const coupled *c, double change) {
     return change * (ILSAI_NEWTON_CURVATURE * change + ILSAI_NEWTON_RESIDUAL * c->residual);
 }
 
-static ilsa_status newton(coupled *c, const coupled_problem *problem, coupled_counts *counts) {
-    int dense = choose_dense(c, problem);
-    ilsa_status status = dense ? ilsai_jacobian_set_influence(&c->matrix) : ILSA_OK;
-    double length = 1;
-    c->residual = 0;
-    for (int iteration = 0; iteration < ILSAI_NEWTON_MAX && status == ILSA_OK; iteration++) {
-        ilsai_coupled_pressure(c, problem, counts);
-        set_rhs(c, problem);
+/* The influence matrix is made anew where the unknowns are others than in the last solve. */
+static ilsa_status solve_linear(coupled *c, int dense, int others, coupled_counts *counts) {
+    ilsa_status status = dense && others ? ilsai_jacobian_set_influence(&c->matrix) : ILSA_OK;
+    if (status == ILSA_OK) {
         counts->newton++;
         status = dense ? ilsai_jacobian_solve_full(&c->matrix, c->rhs, c->step)
                        : solve_iterative(c, counts);
-        if (status != ILSA_OK) {
-            return status == ILSA_ERR_NUMERIC ? ILSA_STEP_REJECTED : status;
+    }
+    return status == ILSA_ERR_NUMERIC ? ILSA_STEP_REJECTED : status;
+}
+
+/*
+ * Newton's method; where cells close or open a semi-smooth one: each iteration solves for the
+ * unknowns that their states call for, and leaves the states that its solution calls for.
+ */
+static ilsa_status newton(coupled *c, const coupled_problem *problem, coupled_counts *counts) {
+    int dense = choose_dense(c, problem), left = ILSAI_NEWTON_MAX;
+    progress made = {0, 1};
+    c->residual = 0;
+    for (int k = 0; k < ILSAI_CONTACT_MAX && left > 0; k++) {
+        int late = k >= ILSAI_CONTACT_LATE;
+        ilsai_coupled_pressure(c, problem, counts);
+        made.switched += reopen(c, problem, late);
+        c->closed = count_closed(c);
+        set_rhs(c, problem);
+        if (made.switched > 0 && problem->contact.state) {
+            hold_opening(c, problem);
         }
-        length = step_length(c, problem);
-        double change = take_step(c, problem, length);
+        ilsa_status status = solve_linear(c, dense, made.switched, counts);
+        if (status != ILSA_OK) {
+            return status;
+        }
+        double length = step_length(c, problem);
+        made = take_step(c, problem, length, late);
         share_cells(set_images, c, problem);
-        if (isnan(change)) {
+        if (isnan(made.change)) {
             return ILSA_STEP_REJECTED;
         }
-        if (length == 1 && error_left(c, change) <= problem->tolerance) {
-            return ILSA_OK;
+        if (length == 1 && !made.switched && error_left(c, made.change) <= problem->tolerance) {
+            return late && is_forced(c, problem) ? ILSA_STEP_REJECTED : ILSA_OK;
         }
+        left -= !made.switched;
     }
-    return status != ILSA_OK ? status : length < 1 ? ILSA_CLOSED : ILSA_STEP_REJECTED;
+    return ILSA_STEP_REJECTED;
 }
 
 /* Which active cell has which response. */
@@ -269,7 +412,6 @@ ilsa_status ilsai_coupled_solve(coupled *c, const coupled_problem *problem,
     if (ilsai_elasticity_set_box(problem->e, bx, by) != ILSA_OK) {
         return ILSA_ERR_MEMORY;
     }
-    share_cells(set_images, c, problem);
     c->matrix.g = problem->g;
     c->matrix.a = &c->cells;
     c->matrix.f = &c->fluid;
@@ -278,6 +420,11 @@ ilsa_status ilsai_coupled_solve(coupled *c, const coupled_problem *problem,
     if (find_responses(c, problem) != ILSA_OK) {
         return ILSA_ERR_MEMORY;
     }
+    if (problem->contact.state) {
+        contact faces = contact_of(c, problem, 0);
+        ilsai_contact_begin(&faces);
+    }
+    share_cells(set_images, c, problem);
     c->matrix.threads = c->fluid.threads = problem->threads;
     ilsai_elasticity_share(problem->e, problem->threads);
     c->matrix.products = 0;

@@ -5,6 +5,7 @@
 #ifndef ILSAI_COUPLED_H
 #define ILSAI_COUPLED_H
 
+#include "contact.h"
 #include "elasticity.h"
 #include "grid.h"
 #include "jacobian.h"
@@ -27,8 +28,9 @@ typedef struct coupled_problem {
     const double *edge;           /* what the self term lacks in channel cells; NULL: nothing */
     const tip_response *response; /* of cells at the front to the widths, NULL: none */
     int response_count;
-    double *width;    /* in: first guess, and the tip widths; out: solution, with images */
-    double *pressure; /* in: first guess in tip cells; out: solution */
+    contact_fields contact; /* where cells may close */
+    double *width;          /* in: first guess, and the tip widths; out: solution, with images */
+    double *pressure;       /* in: first guess in tip cells; out: solution */
     double dt, mu_prime;
     ilsa_linear_solver linear;
     double tolerance; /* of the error in width, relative to the largest */
@@ -43,7 +45,7 @@ typedef struct coupled_counts {
 /*
  * Solves the problem; the pressures of the channel are those before the last change of width, see
  * ilsai_coupled_pressure. counts are added to. ILSA_STEP_REJECTED when Newton's method does not
- * converge, ILSA_CLOSED when it ends with a width at zero, ILSA_ERR_MEMORY, ILSA_ERR_NUMERIC.
+ * converge, ILSA_ERR_MEMORY, ILSA_ERR_NUMERIC.
  */
 ilsa_status ilsai_coupled_solve(coupled *c, const coupled_problem *problem, coupled_counts *counts);
 

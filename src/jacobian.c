@@ -9,6 +9,17 @@
 #include <stdlib.h>
 #include <string.h>
 
+/*
+ * The spring of a cell, over 1 / C(0, 0): what C^-1 is on average over the waves that a step's flow
+ * does not level out.
+ */
+#define JACOBIAN_SPRING 3.0
+/* What of it holds the pressure of a closed cell, from which fluid hardly moves, to where it was.
+ */
+#define JACOBIAN_SOFT 1e-6
+/* In the preconditioner: the spring of a cell that drains, over all that pulls at its pressure. */
+#define JACOBIAN_STIFF 1e6
+
 void ilsai_jacobian_destroy(jacobian *m) {
     free(m->width);
     free(m->pressure);
@@ -24,8 +35,33 @@ void ilsai_jacobian_destroy(jacobian *m) {
     memset(m, 0, sizeof *m);
 }
 
+/* Closed cells answer to nothing. */
 static const tip_response *response_of(const jacobian *m, int k) {
-    return m->response && m->response_of[k] >= 0 ? &m->response[m->response_of[k]] : NULL;
+    int answers = m->a->unknown[k] == UNKNOWN_WIDTH || m->a->unknown[k] == UNKNOWN_PRESSURE;
+    return m->response && answers && m->response_of[k] >= 0 ? &m->response[m->response_of[k]]
+                                                            : NULL;
+}
+
+/* Whether the width of active cell k is an unknown. */
+static int is_free(const jacobian *m, int k) {
+    return m->a->unknown[k] == UNKNOWN_WIDTH;
+}
+
+/* Whether its pressure is, that of a tip cell or a closed one. */
+static int has_pressure(const jacobian *m, int k) {
+    return m->a->unknown[k] >= UNKNOWN_PRESSURE;
+}
+
+/* What a pressure takes of a cell where elasticity is a spring: see JACOBIAN_SPRING. */
+static double spring_of(const jacobian *m) {
+    return JACOBIAN_SPRING / ilsai_elasticity_entry(m->e, 0, 0);
+}
+
+double ilsai_jacobian_without_width(const jacobian *m, int k) {
+    int unknown = m->a->unknown[k];
+    return unknown == UNKNOWN_LEAK      ? -1
+           : unknown == UNKNOWN_CONTACT ? JACOBIAN_SOFT * spring_of(m)
+                                        : 0;
 }
 
 /* Sum of a response's weights times the changes of the widths it answers to. */
@@ -33,7 +69,8 @@ static double respond(const jacobian *m, const tip_response *r, const double *we
                       const double *x) {
     double sum = 0;
     for (int p = 0; r && p < r->count; p++) {
-        sum += weight[p] * x[m->a->slot[r->from[p]]];
+        int slot = m->a->slot[r->from[p]];
+        sum += is_free(m, slot) ? weight[p] * x[slot] : 0;
     }
     return sum;
 }
@@ -75,8 +112,9 @@ static void set_width(const jacobian *m, int k, double w) {
 
 static void set_widths(void *context, int first, int end) {
     const loop *l = context;
+    const jacobian *m = l->m;
     for (int k = first; k < end; k++) {
-        set_width(l->m, k, l->m->a->tip[k] ? ilsai_jacobian_tip_width(l->m, k, l->x) : l->x[k]);
+        set_width(m, k, is_free(m, k) ? l->x[k] : ilsai_jacobian_tip_width(m, k, l->x));
     }
 }
 
@@ -85,10 +123,10 @@ static void complete_pressures(void *context, int first, int end) {
     const jacobian *m = l->m;
     for (int k = first; k < end; k++) {
         double *pressure = &m->pressure[m->a->cell[k]];
-        if (m->a->tip[k]) {
-            *pressure = l->x[k];
-        } else {
+        if (is_free(m, k)) {
             *pressure += m->edge[k] * l->x[k] + ilsai_jacobian_edge_pressure(m, k, l->x);
+        } else if (has_pressure(m, k)) {
+            *pressure = l->x[k];
         }
     }
 }
@@ -125,7 +163,8 @@ static void balance_volumes(void *context, int first, int end) {
                 from_width += m->f->slope[at] * (w + m->width[a->cell[other]]);
             }
         }
-        l->y[k] = w - from_width - from_pressure - ilsai_jacobian_tip_gain(m, k, l->x);
+        double own = is_free(m, k) ? w : w + ilsai_jacobian_without_width(m, k) * l->x[k];
+        l->y[k] = own - from_width - from_pressure - ilsai_jacobian_tip_gain(m, k, l->x);
     }
 }
 
@@ -177,12 +216,6 @@ static ilsa_status reserve_pivots(jacobian *m) {
 
 /* ---- Preconditioner ----------------------------------------------------------------------- */
 
-/*
- * The spring of a cell, over 1 / C(0, 0): what C^-1 is on average over the waves that a step's flow
- * does not level out.
- */
-#define JACOBIAN_SPRING 3.0
-
 /* The part of a cell on the axis of a folded scene, of its faces across, that is in the fold. */
 static double half_on_axis(int mirror, int count, int at, int first) {
     return mirror && count % 2 && at == first ? 0.5 : 1;
@@ -218,26 +251,39 @@ static void place_cells(void *context, int first, int end) {
     }
 }
 
+/* The pressure of a cell that drains is as its neighbours' widths have it: no flow changes it. */
+static double pinned(const jacobian *m, int k, double spring) {
+    if (m->a->unknown[k] != UNKNOWN_LEAK) {
+        return ilsai_jacobian_without_width(m, k);
+    }
+    const double *conductance = m->f->conductance + (size_t)GRID_FACES * (size_t)k;
+    double pull = spring;
+    for (int face = 0; face < GRID_FACES; face++) {
+        pull += conductance[face];
+    }
+    return JACOBIAN_STIFF * pull;
+}
+
 static void set_flow(void *context, int first, int end) {
     jacobian *m = ((const loop *)context)->m;
     const grid *g = m->g;
     multigrid_level *l = &m->pressures.level[0];
-    double spring = JACOBIAN_SPRING / ilsai_elasticity_entry(m->e, 0, 0);
+    double spring = spring_of(m);
     for (int k = first; k < end; k++) {
         const double *conductance = m->f->conductance + (size_t)GRID_FACES * (size_t)k;
         int i = m->a->cell[k] % g->nx, j = m->a->cell[k] / g->nx;
         size_t at = m->place[k];
         l->right[at] = half_on_axis(g->mirror_y, g->ny, j, g->lo_y) * conductance[GRID_RIGHT];
         l->up[at] = half_on_axis(g->mirror_x, g->nx, i, g->lo_x) * conductance[GRID_UP];
-        l->spring[at] = m->a->tip[k] ? 0 : m->weight[k] * spring;
+        l->spring[at] = m->weight[k] * (is_free(m, k) ? spring : pinned(m, k, spring));
     }
 }
 
 static void set_open_cells(void *context, int first, int end) {
     jacobian *m = ((const loop *)context)->m;
     for (int k = first; k < end; k++) {
-        m->widths.open[m->place[k]] = !m->a->tip[k];
-        m->widths.extra[m->place[k]] = m->a->tip[k] ? 0 : edge_self(m, k);
+        m->widths.open[m->place[k]] = is_free(m, k);
+        m->widths.extra[m->place[k]] = is_free(m, k) ? edge_self(m, k) : 0;
     }
 }
 
@@ -280,7 +326,7 @@ static void hand_over(void *context, int first, int end) {
     jacobian *m = ((const loop *)context)->m;
     for (int k = first; k < end; k++) {
         size_t at = m->place[k];
-        m->widths.y[at] = m->a->tip[k] ? 0 : m->pressures.level[0].y[at];
+        m->widths.y[at] = is_free(m, k) ? m->pressures.level[0].y[at] : 0;
     }
 }
 
@@ -289,14 +335,18 @@ static void read_out(void *context, int first, int end) {
     const jacobian *m = l->m;
     for (int k = first; k < end; k++) {
         size_t at = m->place[k];
-        l->y[k] = m->a->tip[k] ? m->pressures.level[0].y[at] : m->widths.x[at];
+        double pressure = m->pressures.level[0].y[at];
+        l->y[k] = is_free(m, k) ? m->widths.x[at]
+                  : has_pressure(m, k)
+                      ? pressure
+                      : -m->pressures.level[0].spring[at] / m->weight[k] * pressure;
     }
 }
 
 /*
  * The matrix is nearly (d - dt A) C: on pressures C^-1 is a spring d wherever flow does not level
- * them out. So first pressures by multigrid, then widths by the near field of C; a tip cell's
- * unknown is its pressure.
+ * them out. So first pressures by multigrid, then widths by the near field of C; where the pressure
+ * is the unknown it stays, and in cells that drain the spring has taken what leaks less.
  */
 void ilsai_jacobian_precondition(void *context, const double *x, double *y) {
     jacobian *m = context;
@@ -322,26 +372,40 @@ static double folded_entry(const jacobian *m, int a, int b) {
     return sum;
 }
 
+/* Adds weights of a response, times value, to a row. */
+static void add_response(const jacobian *m, double *out, const tip_response *r,
+                         const double *weight, double value) {
+    for (int p = 0; r && p < r->count; p++) {
+        int slot = m->a->slot[r->from[p]];
+        out[slot] += is_free(m, slot) ? value * weight[p] : 0;
+    }
+}
+
+/* Adds what the width of an active cell is, times value, to a row. */
+static void add_width(const jacobian *m, double *out, int k, double value) {
+    const tip_response *r = response_of(m, k);
+    if (is_free(m, k)) {
+        out[k] += value;
+    } else {
+        add_response(m, out, r, r ? r->width : NULL, value);
+    }
+}
+
 /* What the pressure of active cell row is in terms of the unknowns: C with the tips' responses. */
 static void fill_influence_row(jacobian *m, int row, double *out) {
     const active *a = m->a;
     memset(out, 0, (size_t)a->count * sizeof *out);
-    if (a->tip[row]) {
+    if (has_pressure(m, row)) {
         out[row] = 1;
         return;
     }
     for (int k = 0; k < a->count; k++) {
-        double value = folded_entry(m, row, k);
-        const tip_response *r = a->tip[k] ? response_of(m, k) : NULL;
-        out[k] += a->tip[k] ? 0 : value;
-        for (int p = 0; r && p < r->count; p++) {
-            out[a->slot[r->from[p]]] += value * r->width[p];
-        }
+        add_width(m, out, k, folded_entry(m, row, k));
     }
-    const tip_response *own = response_of(m, row);
-    out[row] += m->edge[row];
-    for (int p = 0; own && p < own->count; p++) {
-        out[a->slot[own->from[p]]] += own->pressure[p];
+    if (is_free(m, row)) {
+        const tip_response *own = response_of(m, row);
+        out[row] += m->edge[row];
+        add_response(m, out, own, own ? own->pressure : NULL, 1);
     }
 }
 
@@ -358,15 +422,6 @@ ilsa_status ilsai_jacobian_set_influence(jacobian *m) {
     }
     m->seconds_preconditioner += ilsai_clock() - start;
     return ILSA_OK;
-}
-
-/* Adds what the width of an active cell is, times value, to a row. */
-static void add_width(const jacobian *m, double *out, int k, double value) {
-    const tip_response *r = response_of(m, k);
-    out[k] += m->a->tip[k] ? 0 : value;
-    for (int p = 0; m->a->tip[k] && r && p < r->count; p++) {
-        out[m->a->slot[r->from[p]]] += value * r->width[p];
-    }
 }
 
 /* Row k of the full matrix, stored as a column of the transpose. */
@@ -388,8 +443,9 @@ static void fill_full_row(jacobian *m, int row) {
     cblas_daxpy((int)n, total, m->influence + (size_t)row * n, 1, out, 1);
     add_width(m, out, row, diagonal);
     const tip_response *r = response_of(m, row);
-    for (int p = 0; r && p < r->count; p++) {
-        out[a->slot[r->from[p]]] -= r->gain[p];
+    add_response(m, out, r, r ? r->gain : NULL, -1);
+    if (!is_free(m, row)) {
+        out[row] += ilsai_jacobian_without_width(m, row);
     }
 }
 

@@ -54,6 +54,12 @@ void ilsai_jacobian_precondition(void *context, const double *x, double *y);
 /* Changes of the width and of the source term of active cell k for changes x of the unknowns. */
 double ilsai_jacobian_tip_width(const jacobian *m, int k, const double *x);
 double ilsai_jacobian_tip_gain(const jacobian *m, int k, const double *x);
+/*
+ * What the unknown of active cell k, a tip or closed cell, adds to its own row: 0; or what does not
+ * leak; or a spring that holds the pressure of a closed cell, which else were anything where hardly
+ * any fluid can leave.
+ */
+double ilsai_jacobian_without_width(const jacobian *m, int k);
 /* Change of the pressure in active channel cell k as the front moves and its width stays. */
 double ilsai_jacobian_edge_pressure(const jacobian *m, int k, const double *x);
 

@@ -70,6 +70,7 @@ typedef struct loop {
 static void begin_rows(void *context, int first, int end) {
     ilsa_solver *s = ((const loop *)context)->s;
     double dt = ((const loop *)context)->dt;
+    double closure = ilsai_closure_width(s);
     box part = ilsai_box_fold(&s->g, &s->region);
     for (int j = part.y0 + first; j < part.y0 + end; j++) {
         for (int i = part.x0; i <= part.x1; i++) {
@@ -78,6 +79,9 @@ static void begin_rows(void *context, int first, int end) {
             s->leak[cell] = channel && ilsai_has_leakoff(s) ? channel_leak(s, cell, dt) : 0;
             s->gain[cell] = -s->leak[cell];
             s->edge[cell] = 0;
+            s->contact[cell] = channel && ilsai_contact_closed(s->field.width[cell], closure)
+                                   ? CONTACT_CLOSED
+                                   : CONTACT_OPEN;
         }
     }
 }
@@ -176,9 +180,23 @@ static double leak_for(const ilsa_solver *s, const front_cell *c, double dt,
            (s->g.dx * s->g.dy);
 }
 
+/* Whether the cells that place the front in c are closed, which brings it no fluid. */
+static int is_cut_off(const ilsa_solver *s, const front_cell *c) {
+    int open = 0;
+    for (int p = 0; p < c->from.count; p++) {
+        open |= s->contact[s->seeds[c->from.seed[p]].cell] == CONTACT_OPEN;
+    }
+    return !open;
+}
+
+/* A tip cell that is cut off leaks no more than it loses in width, and gains none. */
 static void leak_at_front(ilsa_solver *s, const front_cell *c, double dt, tip_record *record) {
     record->cell = c->cell;
-    set_leak(s, c->cell, leak_for(s, c, dt, &record->history));
+    double leak = leak_for(s, c, dt, &record->history);
+    if (s->trial.kind[c->cell] == ILSA_CELL_TIP && is_cut_off(s, c)) {
+        leak = fmin(leak, fmax(s->field.width[c->cell] - s->trial.width[c->cell], 0));
+    }
+    set_leak(s, c->cell, leak);
 }
 
 /* Mean over the cell of what the jumps of the stress behind its front add, from the seeds' sides.
@@ -233,7 +251,8 @@ static void set_cell(ilsa_solver *s, const front_cell *c, double dt, int hold, i
     }
     if (kind == ILSA_CELL_TIP || was != ILSA_CELL_CHANNEL) {
         rim_width w = mean_width(s, c, dt);
-        set_width(s, c->cell, w.value);
+        double most = is_cut_off(s, c) ? s->field.width[c->cell] : w.value;
+        set_width(s, c->cell, fmin(w.value, most));
         s->by_advance[k] = w.by_advance;
     }
     if (ilsai_has_leakoff(s)) {

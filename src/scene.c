@@ -112,6 +112,32 @@ grid ilsai_solver_grid(const ilsa_solver *s) {
     return ilsai_grid(&s->mesh, mirror_x, mirror_y);
 }
 
+double ilsai_injection_rate(const ilsa_solver *s) {
+    double rate = 0;
+    for (int k = 0; k < s->def.source_count; k++) {
+        rate += s->sources[k].def.rate;
+    }
+    return rate;
+}
+
+double ilsai_closure_width(const ilsa_solver *s) {
+    return s->def.closure_width > 0 ? s->def.closure_width : ILSAI_CLOSURE * s->now.width_most;
+}
+
+int ilsai_open_cells(const ilsa_solver *s) {
+    const box *b = &s->now.footprint;
+    double closure = ilsai_closure_width(s);
+    int open = 0;
+    for (int j = b->y0; j <= b->y1; j++) {
+        for (int i = b->x0; i <= b->x1; i++) {
+            int cell = j * s->mesh.nx + i;
+            open += s->field.kind[cell] >= ILSA_CELL_SURVEY &&
+                    !ilsai_contact_closed(s->field.width[cell], closure);
+        }
+    }
+    return open;
+}
+
 double ilsai_solver_band(const ilsa_solver *s) {
     return ILSAI_BAND * hypot(s->mesh.dx, s->mesh.dy);
 }

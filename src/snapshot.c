@@ -9,7 +9,7 @@
 #include <string.h>
 
 #define SNAPSHOT_MAGIC "ilsasnap"
-enum { SNAPSHOT_LAYOUT = 2 };
+enum { SNAPSHOT_LAYOUT = 3 };
 
 typedef struct header {
     char magic[8];
@@ -23,7 +23,7 @@ typedef struct identity {
     int nx, ny, source_count, level;
     double dx, dy; /* as they were; coarsening doubles them */
     ilsa_material_def material;
-    double step_cells, tolerance, dt_max;
+    double step_cells, tolerance, dt_max, closure_width;
     int coarsen, tip, symmetry, loop, linear, product;
 } identity;
 
@@ -77,6 +77,7 @@ static identity identify(const ilsa_solver *s) {
     id.step_cells = s->step_cells;
     id.tolerance = s->tolerance;
     id.dt_max = s->def.dt_max;
+    id.closure_width = s->def.closure_width;
     id.coarsen = s->def.coarsen;
     id.tip = (int)s->def.tip;
     id.symmetry = (int)s->def.symmetry;
@@ -112,6 +113,8 @@ static void pass_state(stream *io, state *now) {
     packed.front_change = now->front_change;
     packed.front_advance = now->front_advance;
     packed.dt = now->dt;
+    packed.leak_rate = now->leak_rate;
+    packed.width_most = now->width_most;
     packed.footprint = now->footprint;
     packed.unknowns = now->unknowns;
     pass(io, &packed, sizeof packed);

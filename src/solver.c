@@ -37,7 +37,11 @@ static ilsa_status check_options(const ilsa_solver_def *def) {
     if (def->tolerance != 0) {
         status = status ? status : check_number("tolerance", def->tolerance, 1e-12, 0.1);
     }
-    return status ? status : ilsai_check_not_negative(ilsai_thread_error(), "dt_max", def->dt_max);
+    status =
+        status ? status : ilsai_check_not_negative(ilsai_thread_error(), "dt_max", def->dt_max);
+    return status ? status
+                  : ilsai_check_not_negative(ilsai_thread_error(), "closure_width",
+                                             def->closure_width);
 }
 
 static ilsa_status check_source(const ilsa_mesh_def *mesh, const ilsa_source_def *source) {
@@ -119,11 +123,14 @@ static ilsa_status allocate(ilsa_solver *s) {
     s->sigma = malloc(count * sizeof(double));
     s->gain = malloc(count * sizeof(double));
     s->leak = malloc(count * sizeof(double));
+    s->relief = leak_off ? calloc(count, sizeof(double)) : NULL;
+    s->contact = calloc(count, 1);
     s->edge = malloc(count * sizeof(double));
     s->march = ilsai_front_create();
     s->flow = ilsai_coupled_create(&s->mesh);
     s->mixer = ilsai_anderson_create(ILSAI_ANDERSON_DEPTH);
-    if (!s->sigma || !s->gain || !s->leak || !s->edge || !s->march || !s->flow || !s->mixer ||
+    if (!s->sigma || !s->gain || !s->leak || (leak_off && !s->relief) || !s->contact || !s->edge ||
+        !s->march || !s->flow || !s->mixer ||
         ilsai_fields_create(&s->field, &s->mesh, leak_off) != ILSA_OK ||
         ilsai_fields_create(&s->trial, &s->mesh, 0) != ILSA_OK) {
         return ILSA_ERR_MEMORY;
@@ -205,6 +212,8 @@ void ilsa_solver_destroy(ilsa_solver **solver) {
     free(s->trial_tips.at);
     free(s->gain);
     free(s->leak);
+    free(s->relief);
+    free(s->contact);
     free(s->edge);
     free(s->seeds);
     free(s->responses);

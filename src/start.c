@@ -97,6 +97,7 @@ static void balance(ilsa_solver *s, const radial_solution *solution) {
             for (int i = b->x0; i <= b->x1; i++) {
                 int cell = j * s->mesh.nx + i, wet = s->field.kind[cell] >= ILSA_CELL_SURVEY;
                 s->field.width[cell] *= wet ? factor : 1;
+                s->now.width_most = fmax(s->now.width_most, s->field.width[cell]);
                 *(wet ? &channel : &tip) += pass ? 0 : s->field.width[cell] * area;
             }
         }

@@ -45,7 +45,9 @@ typedef struct state {
     double injected, leaked, fracture; /* volumes */
     double front_change, front_advance;
     double dt;
-    box footprint; /* of the wet cells */
+    double leak_rate;  /* volume per time leaked in the last step */
+    double width_most; /* the largest width so far */
+    box footprint;     /* of the wet cells */
     int unknowns;
 } state;
 
@@ -81,8 +83,10 @@ struct ilsa_solver {
     box region;   /* cells that the step may touch */
     fields trial; /* trial.trigger and trial.leaked are unused: both change on acceptance */
     tip_records trial_tips;
-    double *edge;        /* what the self terms of channel cells lack beside the front */
-    double *gain, *leak; /* per area in this step: S of (4.4), and the leaked part of it */
+    double *edge;           /* what the self terms of channel cells lack beside the front */
+    double *gain, *leak;    /* per area in this step: S of (4.4), and the leaked part of it */
+    double *relief;         /* what of leak does not, see contact.h; only with leak-off */
+    unsigned char *contact; /* which channel cells are closed, see contact.h */
     front_seed *seeds;
     double *distance, *next_distance;
     int seed_count, seed_capacity;
@@ -139,6 +143,13 @@ static inline int ilsai_has_leakoff(const ilsa_solver *s) {
 
 /* Cells around the footprint that a step may touch: the advance and the band of distances. */
 box ilsai_solver_region(const ilsa_solver *s, const box *footprint);
+
+/* Volume per time injected by all sources. */
+double ilsai_injection_rate(const ilsa_solver *s);
+
+/* Width of a closed cell, see contact.h, and the channel cells that are wider. */
+double ilsai_closure_width(const ilsa_solver *s);
+int ilsai_open_cells(const ilsa_solver *s);
 
 /* Distance beyond the front up to which levels are kept. */
 double ilsai_solver_band(const ilsa_solver *s);

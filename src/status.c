@@ -18,7 +18,7 @@ const char *ilsa_status_text(ilsa_status status) {
     case ILSA_STALLED:
         return "the step fell below the smallest one without being accepted";
     case ILSA_CLOSED:
-        return "the fracture would close before the end of the step";
+        return "every cell is closed and nothing is injected";
     case ILSA_NO_SPACE:
         return "the buffer is too small";
     case ILSA_ERR_NULL:

@@ -109,11 +109,15 @@ static int is_nested(const ilsa_solver *s) {
     return s->def.loop == ILSA_LOOP_NESTED;
 }
 
+static int is_open(const ilsa_solver *s, const front_seed *seed) {
+    return s->contact[seed->cell] == CONTACT_OPEN;
+}
+
 /* The front moves on as it did in the last step. */
 static void predict(ilsa_solver *s, double dt) {
     for (int k = 0; k < s->seed_count; k++) {
         front_seed *seed = &s->seeds[k];
-        double advance = is_nested(s) ? 0 : seed->V * dt;
+        double advance = is_nested(s) || !is_open(s, seed) ? 0 : seed->V * dt;
         s->distance[k] = bounded(seed, seed->s0 + advance);
     }
 }
@@ -150,11 +154,13 @@ static double advance(const ilsa_solver *s) {
 
 /*
  * Tolerance of the front in cells. It shrinks with a step that moves the front less than the usual,
- * so that the velocity is found as well, down to what rounding leaves.
+ * so that the velocity is found as well, but for one that is as good as none.
  */
 static double tolerance_now(const ilsa_solver *s, int pass) {
     double usual = pass < ILSAI_SETTLE_PASS ? s->tolerance : fmax(s->tolerance, ILSAI_SETTLE);
-    return fmax(usual * fmin(1, advance(s) / s->step_cells), ILSAI_TOLERANCE_LEAST);
+    double part = fmin(1, advance(s) / s->step_cells);
+    part = part > 0 ? fmax(part, ILSAI_TOLERANCE_PART) : 1;
+    return fmax(usual * part, ILSAI_TOLERANCE_LEAST);
 }
 
 static coupled_problem pose(ilsa_solver *s, double dt, double change) {
@@ -171,6 +177,7 @@ static coupled_problem pose(ilsa_solver *s, double dt, double change) {
                                .dt = dt,
                                .mu_prime = s->material.mu_prime,
                                .linear = s->def.linear,
+                               .contact = {ilsai_closure_width(s), s->contact, s->leak, s->relief},
                                .response = s->responses,
                                .response_count = s->response_count,
                                .threads = s->threads};
@@ -183,11 +190,18 @@ static void survey_seeds(void *context, int first, int end) {
     ilsa_solver *s = ((const seed_loop *)context)->s;
     double dt = ((const seed_loop *)context)->dt;
     for (int k = first; k < end; k++) {
-        s->next_distance[k] = bounded(&s->seeds[k], ilsai_survey_distance(s, &s->seeds[k], dt));
+        front_seed *seed = &s->seeds[k];
+        if (is_open(s, seed)) {
+            s->next_distance[k] = bounded(seed, ilsai_survey_distance(s, seed, dt));
+        } else {
+            s->next_distance[k] = seed->s0;
+            seed->ds_dw = seed->ds_inner = 0;
+        }
     }
 }
 
-/* Where the widths want the front; returns the largest difference to where it is, in cells. */
+/* Where the widths want the front, which rests before closed cells; returns the largest difference
+ * to where it is, in cells. */
 static double survey(ilsa_solver *s, double dt) {
     double largest = 0;
     share_seeds(survey_seeds, s, dt);
@@ -213,9 +227,18 @@ static void move_front(ilsa_solver *s, int pass) {
     }
 }
 
+/* Per area in the step. */
+static double leaked_from(const ilsa_solver *s, int cell) {
+    return s->leak[cell] - (s->relief ? s->relief[cell] : 0);
+}
+
 typedef struct volumes {
-    double channel, tip, leaked;
+    double open, held, leaked; /* in open channel cells, in the others */
 } volumes;
+
+static int is_open_channel(const ilsa_solver *s, int cell) {
+    return is_channel(s->trial.kind[cell]) && s->contact[cell] == CONTACT_OPEN;
+}
 
 static volumes sum_volumes(const ilsa_solver *s) {
     volumes v = {0, 0, 0};
@@ -226,9 +249,8 @@ static volumes sum_volumes(const ilsa_solver *s) {
             int cell = ilsai_grid_cell(&s->g, i, j);
             double area = ilsai_grid_images(&s->g, i, j, image) * s->g.dx * s->g.dy;
             if (s->trial.kind[cell] != ILSA_CELL_EMPTY) {
-                double volume = s->trial.width[cell] * area;
-                *(s->trial.kind[cell] == ILSA_CELL_TIP ? &v.tip : &v.channel) += volume;
-                v.leaked += s->leak[cell] * area;
+                *(is_open_channel(s, cell) ? &v.open : &v.held) += s->trial.width[cell] * area;
+                v.leaked += leaked_from(s, cell) * area;
             }
         }
     }
@@ -282,7 +304,8 @@ static ilsa_status iterate(ilsa_solver *s, double dt, coupled_counts *counts, il
         if (isnan(*change)) {
             return ILSA_STEP_REJECTED;
         }
-        if (*change <= tolerance_now(s, pass)) {
+        int sharp = problem.tolerance <= s->tolerance; /* not the first guess of a front at rest */
+        if (sharp && *change <= tolerance_now(s, pass)) {
             ilsai_coupled_pressure(s->flow, &problem, counts);
             return ILSA_OK;
         }
@@ -292,34 +315,38 @@ static ilsa_status iterate(ilsa_solver *s, double dt, coupled_counts *counts, il
 }
 
 static double injected_in(const ilsa_solver *s, double dt) {
-    double rate = 0;
-    for (int k = 0; k < s->def.source_count; k++) {
-        rate += s->sources[k].def.rate;
-    }
-    return rate * dt;
+    return ilsai_injection_rate(s) * dt;
 }
 
-/*
- * The volume that the iteration's tolerance has left unaccounted for goes into the channel widths
- * in proportion, so that injected = fracture + leaked holds to rounding at every step.
- */
-static ilsa_status balance_volume(ilsa_solver *s, double dt) {
-    volumes v = sum_volumes(s);
-    double injected = s->now.injected + injected_in(s, dt), leaked = s->now.leaked + v.leaked;
-    double factor = (injected - leaked - v.tip) / v.channel;
-    if (!(fabs(factor - 1) < ILSAI_BALANCE_MAX)) {
-        return ILSA_STEP_REJECTED;
-    }
+static void scale_widths(ilsa_solver *s, double factor) {
     box part = ilsai_box_fold(&s->g, &s->trial_footprint);
     for (int j = part.y0; j <= part.y1; j++) {
         for (int i = part.x0; i <= part.x1; i++) {
             int cell = ilsai_grid_cell(&s->g, i, j);
-            s->trial.width[cell] *= is_channel(s->trial.kind[cell]) ? factor : 1;
+            s->trial.width[cell] *= is_open_channel(s, cell) ? factor : 1;
+            s->now.width_most = fmax(s->now.width_most, s->trial.width[cell]);
         }
     }
+}
+
+/*
+ * The volume that the iteration's tolerance has left unaccounted for goes into the widths of the
+ * open channel in proportion, so that injected = fracture + leaked holds to rounding at every step.
+ * Where all is closed it has leaked.
+ */
+static ilsa_status balance_volume(ilsa_solver *s, double dt) {
+    volumes v = sum_volumes(s);
+    double injected = s->now.injected + injected_in(s, dt), leaked = s->now.leaked + v.leaked;
+    double fracture = v.open > 0 ? injected - leaked : v.held;
+    double off = fabs(injected - leaked - v.held - v.open);
+    if (!(off < ILSAI_BALANCE_MAX * (v.open > 0 ? v.open : v.held))) {
+        return ILSA_STEP_REJECTED;
+    }
+    scale_widths(s, v.open > 0 ? (fracture - v.held) / v.open : 1);
+    s->now.leak_rate = (injected - fracture - s->now.leaked) / dt;
     s->now.injected = injected;
-    s->now.leaked = leaked;
-    s->now.fracture = v.tip + v.channel * factor;
+    s->now.leaked = injected - fracture;
+    s->now.fracture = fracture;
     return ILSA_OK;
 }
 
@@ -357,7 +384,7 @@ static void add_leaked(ilsa_solver *s) {
     for (int j = part.y0; j <= part.y1; j++) {
         for (int i = part.x0; i <= part.x1; i++) {
             int cell = ilsai_grid_cell(&s->g, i, j);
-            s->field.leaked[cell] += s->leak[cell];
+            s->field.leaked[cell] += leaked_from(s, cell);
         }
     }
 }
@@ -459,10 +486,20 @@ static void accept(ilsa_solver *s, double dt, double change) {
     s->now.time += dt;
 }
 
+/* Nothing would move. */
+static ilsa_status check_closed(ilsa_solver *s) {
+    if (ilsai_injection_rate(s) > 0 || ilsai_open_cells(s) > 0) {
+        return ILSA_OK;
+    }
+    return ilsai_fail(&s->error, ILSA_CLOSED,
+                      "time %g: every cell is closed and nothing is injected", s->now.time);
+}
+
 ilsa_status ilsai_step(ilsa_solver *s, double dt, ilsa_report *report) {
     coupled_counts counts = {0};
     double change = 0;
-    ilsa_status status = begin(s, dt);
+    ilsa_status status = check_closed(s);
+    status = status ? status : begin(s, dt);
     if (status == ILSA_OK) {
         predict(s, dt);
         status = iterate(s, dt, &counts, report, &change);

@@ -9,6 +9,8 @@
 /* GMRES: relative residual of one Newton system. The front and the cube of the width change by more
  * between two systems than a sharper solution would be worth. */
 #define ILSAI_GMRES_TOLERANCE 3e-2
+/* and while cells are closed: which of them open, and what they leak, are small differences. */
+#define ILSAI_GMRES_CONTACT 1e-4
 /* Newton: error left in the widths after a relative change d is about NEWTON_CURVATURE d^2. */
 #define ILSAI_NEWTON_CURVATURE 2.0
 /* and about NEWTON_RESIDUAL d times the relative residual that GMRES has left. */
@@ -17,8 +19,18 @@
 #define ILSAI_DENSE_UNKNOWNS 100
 /* Part of a width that one Newton step may take away. */
 #define ILSAI_WIDTH_DROP 0.9
-/* Newton iterations of one coupled solve before the step is given up. */
-#define ILSAI_NEWTON_MAX 25
+/* Newton iterations of one coupled solve before the step is given up: those in which no cell closed
+ * or opened, and all. */
+#define ILSAI_NEWTON_MAX  25
+#define ILSAI_CONTACT_MAX 60
+/* Newton: from this iteration on cells no longer open and close in turn, see contact.h, */
+#define ILSAI_CONTACT_LATE 20
+/* unless they would leave their bounds by so much of the largest width or net pressure. */
+#define ILSAI_CONTACT_FORCED 1e-2
+/* Contact: width of a closed cell over the largest that the fracture has had. */
+#define ILSAI_CLOSURE 1e-4
+/* Contact: width, over that, under which a Newton step may close a cell. */
+#define ILSAI_NEARLY_CLOSED 10.0
 
 /* Front: from this pass on the cells at the front no longer answer within the Newton system, and
  * the distances are accelerated instead: a step that has not converged by then goes to and fro. */
@@ -62,8 +74,10 @@
 #define ILSAI_DT_CUT    0.5
 /* Time: longest step where the front stands still, as a part of the time so far. */
 #define ILSAI_DT_RESTING 0.1
+/* Time: part of its volume that a fracture may lose in a step. */
+#define ILSAI_DT_LOSS 0.1
 /* Time: smallest step relative to the time so far before an advance gives up. */
-#define ILSAI_DT_SMALLEST 1e-9
+#define ILSAI_DT_SMALLEST 1e-12
 
 /* Source: closer to a cell edge than this, in cells, it feeds the cells on both sides. */
 #define ILSAI_EDGE_CELLS 1e-9
@@ -110,6 +124,8 @@
 #define ILSAI_SHARE_CELLS 512
 #define ILSAI_SHARE_FRONT 8
 
+/* Smallest part of the tolerance of the front that a step which hardly moves it asks for. */
+#define ILSAI_TOLERANCE_PART 1e-4
 /* Smallest tolerance of the front, in cells: rounding of a distance. */
 #define ILSAI_TOLERANCE_LEAST 1e-12
 /* Tolerance of the widths relative to that of the front: w changes half as much as s. */

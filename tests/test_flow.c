@@ -143,7 +143,7 @@ static void active_cells_are_the_representatives_that_are_not_empty(void **state
             }
             found++;
             assert_true(slot >= 0 && slot < s.a.count && s.a.cell[slot] == cell);
-            assert_int_equal(s.a.tip[slot], s.kind[cell] == ILSA_CELL_TIP);
+            assert_int_equal(s.a.unknown[slot] == UNKNOWN_PRESSURE, s.kind[cell] == ILSA_CELL_TIP);
             for (int face = 0; face < GRID_FACES; face++) {
                 int other = ilsai_grid_neighbour(&s.g, i, j, face);
                 int expected = other < 0 ? -1 : s.a.slot[other];

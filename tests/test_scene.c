@@ -40,7 +40,8 @@ static const char good[] = "[material]\n"        /* 1 */
                            "level = 3\n"         /* 26 */
                            "coarsen = no\n"      /* 27 */
                            "tip = full\n"        /* 28 */
-                           "threads = 2\n";      /* 29 */
+                           "threads = 2\n"       /* 29 */
+                           "closure_width = 1e-6\n";
 
 typedef struct bad_scene {
     const char *name;
@@ -253,6 +254,7 @@ static const bad_scene scenes[] = {
      "23: [run] output_times: must be after the initial fracture's own time, > ..."},
     GREATER_ZERO("run", "dt_initial", "24", "dt_initial = 1\n"),
     GREATER_ZERO("run", "dt_max", "25", "dt_max = 5\n"),
+    GREATER_ZERO("run", "closure_width", "30", "closure_width = 1e-6\n"),
     {"run level: not a number", "level = 3\n", "level = high\n",
      "26: [run] level = high: not a number; must be a whole number in 1 .. 5"},
     {"run level: not whole", "level = 3\n", "level = 2.5\n",
@@ -269,7 +271,7 @@ static const bad_scene scenes[] = {
      "28: [run] tip = : must be full, toughness-viscosity or toughness"},
     {"run: unknown key", "coarsen = no\n", "refine = no\n",
      "27: [run] refine = no: unknown key; must be one of t_end, output_times, dt_initial, dt_max, "
-     "level, coarsen, tip, threads"},
+     "level, coarsen, tip, threads, closure_width"},
     {"run threads: none", "threads = 2\n", "threads = 0\n",
      "29: [run] threads = 0: must be a whole number in 1 .. 64"},
     {"run threads: too many", "threads = 2\n", "threads = 65\n",
@@ -286,7 +288,7 @@ static const bad_scene scenes[] = {
     {"unknown section", "[run]\n", "[rock]\ndensity = 2700\n[run]\n",
      "21: [rock]: unknown section; must be material, mesh, stress, injection, injection.2 .. "
      "injection.1000, initial or run"},
-    {"missing section", "[initial]\nradius = 5\n", "", "27: [initial]: missing section"},
+    {"missing section", "[initial]\nradius = 5\n", "", "28: [initial]: missing section"},
     {"key before the first section", "[material]\n", "level = 3\n[material]\n",
      "1: level stands before the first [section]"},
     {"neither heading nor key", "mu = 0.1\n", "viscous\nmu = 0.1\n",

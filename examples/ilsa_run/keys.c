@@ -54,7 +54,8 @@ const section_def sections[SECTION_COUNT] = {
       {"level", KEY_WHOLE, 1, 5, 0, {NULL}},
       {"coarsen", KEY_CHOICE, 0, 0, 0, {"no", "yes"}},
       {"tip", KEY_CHOICE, 0, 0, 0, {"full", "toughness-viscosity", "toughness"}},
-      {"threads", KEY_WHOLE, 1, 64, 0, {NULL}}}},
+      {"threads", KEY_WHOLE, 1, 64, 0, {NULL}},
+      {"closure_width", KEY_NUMBER, POSITIVE}}},
 };
 /* clang-format on */
 

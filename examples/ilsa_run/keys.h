@@ -62,7 +62,8 @@ enum {
     RUN_LEVEL,
     RUN_COARSEN,
     RUN_TIP,
-    RUN_THREADS
+    RUN_THREADS,
+    RUN_CLOSURE_WIDTH
 };
 
 extern const section_def sections[SECTION_COUNT];

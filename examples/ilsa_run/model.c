@@ -59,6 +59,7 @@ static ilsa_status make_solver(const scene *sc, const parts *p, ilsa_solver **so
     def.coarsen = sc->coarsen;
     def.threads = sc->threads;
     def.dt_max = sc->dt_max;
+    def.closure_width = sc->closure_width;
     return ilsa_solver_create(&def, solver);
 }
 

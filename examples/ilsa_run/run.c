@@ -71,6 +71,8 @@ static ilsa_status take_step(run *r) {
     ilsa_report report;
     ilsa_summary now;
     ilsa_status status = ilsa_advance_one(r->solver, step_limit(r), &report);
+    if (status == ILSA_CLOSED)
+        status = ilsa_wait(r->solver, step_limit(r));
     if (!status)
         status = ilsa_get_summary(r->solver, &now);
     if (status)

@@ -237,6 +237,7 @@ static void take_run(draft *d, scene *sc, section *s) {
     sc->coarsen = (int)number_or(s, RUN_COARSEN, 0);
     sc->tip = tips[(int)number_or(s, RUN_TIP, 0)];
     sc->threads = (int)number_or(s, RUN_THREADS, 1);
+    sc->closure_width = number_or(s, RUN_CLOSURE_WIDTH, 0);
     sc->output_line = s->values[RUN_OUTPUT_TIMES].line;
     sc->output_times = take_numbers(s, RUN_OUTPUT_TIMES, &sc->output_count);
     if (sc->output_times)

@@ -25,6 +25,7 @@ typedef struct scene {
     int source_count;
     double radius, time;              /* of the initial fracture; one of them is 0 */
     double t_end, dt_initial, dt_max; /* dt_*: 0: not limited */
+    double closure_width;             /* 0: the library's own */
     double *output_times;
     int output_count;
     int level, coarsen, threads;

@@ -69,8 +69,8 @@ static void put_state(FILE *s, const ilsa_summary *f) {
     fprintf(s, "  unaccounted for     %.2g of the injected\n",
             f->volume_injected > 0 ? fabs(imbalance) / f->volume_injected : 0);
     fprintf(s, "efficiency            %.6g\n", f->efficiency);
-    fprintf(s, "cells                 %d, of which tip %d, survey %d (at rest %d)\n\n", f->cells,
-            f->tip_cells, f->survey_cells, f->arrested_cells);
+    fprintf(s, "cells                 %d, of which tip %d, survey %d (at rest %d), closed %d\n\n",
+            f->cells, f->tip_cells, f->survey_cells, f->arrested_cells, f->closed_cells);
 }
 
 static void put_work(FILE *s, const ilsa_report *total) {

@@ -84,10 +84,11 @@ typedef struct ilsa_solver_def {
     ilsa_linear_solver linear;      /* default ILSA_LINEAR_AUTO */
     ilsa_product product;           /* default ILSA_PRODUCT_AUTO */
     int coarsen;                    /* 1: ilsa_advance coarsens the mesh at its edge; default 0 */
-    int threads;       /* 1 .. 64 that a step uses, the caller's included; default 0: as 1 */
-    double step_cells; /* front advance of a suggested step, in cells, 0.01 .. 1; 0: level */
-    double tolerance;  /* of the front, in cells, 1e-12 .. 0.1; 0: by level */
-    double dt_max;     /* longest suggested step, time, > 0; 0: no limit */
+    int threads;          /* 1 .. 64 that a step uses, the caller's included; default 0: as 1 */
+    double step_cells;    /* front advance of a suggested step, in cells, 0.01 .. 1; 0: level */
+    double tolerance;     /* of the front, in cells, 1e-12 .. 0.1; 0: by level */
+    double dt_max;        /* longest suggested step, time, > 0; 0: no limit */
+    double closure_width; /* that a closed cell keeps, length; 0: 1e-4 of the largest ever */
 } ilsa_solver_def;
 
 /* A definition with the defaults above; mesh, material and sources must be given. */
@@ -146,10 +147,13 @@ typedef struct ilsa_report {
 } ilsa_report;
 
 /*
- * Takes one step of exactly dt > 0 by backward Euler (4.4). Any status other than ILSA_OK leaves
- * the solver bit for bit as it was: ILSA_STEP_REJECTED, ILSA_STEP_TOO_LARGE, ILSA_MESH_EDGE,
- * ILSA_CLOSED, ILSA_ERR_NULL, ILSA_ERR_VALUE, ILSA_ERR_STATE, ILSA_ERR_MEMORY, ILSA_ERR_NUMERIC.
- * report may be NULL; it is written in any case but for NULL solvers.
+ * Takes one step of exactly dt > 0 by backward Euler (4.4). Where the width would fall under the
+ * closure width a cell closes: it keeps that width, its faces carry what of the closure stress the
+ * fluid does not, it leaks what it had and then nothing, and it opens again when the pressure of
+ * the fluid exceeds the closure stress. The front before closed cells rests. Any status other than
+ * ILSA_OK leaves the solver bit for bit as it was: ILSA_STEP_REJECTED, ILSA_STEP_TOO_LARGE,
+ * ILSA_MESH_EDGE, ILSA_CLOSED, ILSA_ERR_NULL, ILSA_ERR_VALUE, ILSA_ERR_STATE, ILSA_ERR_MEMORY,
+ * ILSA_ERR_NUMERIC. report may be NULL; it is written in any case but for NULL solvers.
  */
 ILSA_API ilsa_status ilsa_step(ilsa_solver *solver, double dt, ilsa_report *report);
 
@@ -170,6 +174,13 @@ ILSA_API ilsa_status ilsa_advance_one(ilsa_solver *solver, double t_limit, ilsa_
 ILSA_API ilsa_status ilsa_advance(ilsa_solver *solver, double t_end, ilsa_report *report);
 
 /*
+ * Lets time pass up to t > time in a fracture where nothing happens: every cell is closed and
+ * nothing is injected, which a step answers with ILSA_CLOSED. Only the clock moves.
+ * ILSA_ERR_NULL, ILSA_ERR_VALUE, ILSA_ERR_STATE where something would happen.
+ */
+ILSA_API ilsa_status ilsa_wait(ilsa_solver *solver, double t);
+
+/*
  * Moves the state to cells twice as large, the same number of cells: volume and leaked volume are
  * conserved to rounding, trigger times and velocity histories carried over (end of section 5.1).
  * ILSA_ERR_NULL, ILSA_ERR_STATE, ILSA_ERR_VALUE (footprint under 4 of the new cells across),
@@ -186,7 +197,8 @@ ILSA_API ilsa_status ilsa_get_time(const ilsa_solver *solver, double *time);
 /*
  * Fields over the mesh, read without a copy: nx * ny values, owned by the solver, valid until the
  * next call that changes it. Width: 0 outside the footprint; in a tip cell the cell's mean.
- * Pressure: of the fluid, total (not net); in cells outside the footprint 0.
+ * Pressure: of the fluid, total (not net), in closed cells that of what is caught in them; in cells
+ * outside the footprint 0.
  * Stress: the far-field stress the solver uses.
  */
 ILSA_API ilsa_status ilsa_get_width(const ilsa_solver *solver, const double **width);
@@ -245,8 +257,10 @@ typedef struct ilsa_summary {
     double efficiency;                                  /* volume_fracture / volume_injected */
     double V_max;                                       /* fastest point of the front */
     int cells, tip_cells, survey_cells, arrested_cells; /* survey cells at rest: V = 0 */
-    int unknowns;                                       /* of the last step: after symmetry */
-    ilsa_report total; /* since the start; seconds, steps and iterations summed */
+    int closed_cells;     /* survey and channel cells whose faces touch */
+    double closure_width; /* the width that such cells keep */
+    int unknowns;         /* of the last step: after symmetry */
+    ilsa_report total;    /* since the start; seconds, steps and iterations summed */
 } ilsa_summary;
 
 ILSA_API ilsa_status ilsa_get_summary(const ilsa_solver *solver, ilsa_summary *summary);

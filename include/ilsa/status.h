@@ -18,7 +18,7 @@ typedef enum ilsa_status {
     ILSA_MESH_EDGE = 2,     /* the footprint would leave the mesh: coarsen, or take a larger mesh */
     ILSA_STEP_TOO_LARGE = 3, /* the front would pass more cells than one step may: a smaller dt */
     ILSA_STALLED = 4,     /* advance: the step fell below the smallest one without being accepted */
-    ILSA_CLOSED = 5,      /* a width would fall to zero in the step: a smaller dt may help */
+    ILSA_CLOSED = 5,      /* every cell is closed and nothing is injected: see ilsa_wait */
     ILSA_NO_SPACE = 6,    /* the caller's buffer is too small; the size needed was written */
     ILSA_ERR_NULL = -1,   /* a required pointer is NULL */
     ILSA_ERR_VALUE = -2,  /* an argument is NaN, infinite or out of its range */
