@@ -298,7 +298,7 @@ typedef struct stiffness {
 static stiffness make_stiffness(const disc *d, const radial_solution *s, int completed) {
     stiffness k = {NULL, allocate((size_t)cells_of(d), sizeof *k.edge)};
     if (ilsai_elasticity_create(1, d->dx, d->dy, ILSA_PRODUCT_AUTO, &k.e) ||
-        ilsai_elasticity_set_box(k.e, d->nx, d->ny)) {
+        ilsai_elasticity_set_box(k.e, d->nx, d->ny, MIRROR_NONE, MIRROR_NONE)) {
         fprintf(stderr, "no elasticity\n");
         exit(EXIT_FAILURE);
     }

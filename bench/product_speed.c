@@ -94,7 +94,7 @@ static elasticity *make(ilsa_product method) {
 static double time_method(ilsa_product method, subject s, int bx, int by, double *ready) {
     s.e = make(method);
     double start = ilsai_clock();
-    if (ilsai_elasticity_set_box(s.e, bx, by)) {
+    if (ilsai_elasticity_set_box(s.e, bx, by, MIRROR_NONE, MIRROR_NONE)) {
         ilsai_elasticity_destroy(&s.e);
         return NAN;
     }

@@ -113,20 +113,6 @@ static void share_cells(team_function *function, coupled *c, const coupled_probl
     ilsai_team_run(problem->threads, function, &l, c->cells.count, ILSAI_SHARE_CELLS);
 }
 
-static void set_images(void *context, int first, int end) {
-    const loop *l = context;
-    const grid *g = l->problem->g;
-    double *width = l->problem->width;
-    int image[4];
-    for (int k = first; k < end; k++) {
-        int cell = l->c->cells.cell[k];
-        int count = ilsai_grid_images(g, cell % g->nx, cell / g->nx, image);
-        for (int m = 1; m < count; m++) {
-            width[image[m]] = width[cell];
-        }
-    }
-}
-
 static void add_pressures(void *context, int first, int end) {
     coupled *c = ((const loop *)context)->c;
     const coupled_problem *problem = ((const loop *)context)->problem;
@@ -143,9 +129,9 @@ static void add_pressures(void *context, int first, int end) {
 }
 
 void ilsai_coupled_pressure(coupled *c, const coupled_problem *problem, coupled_counts *counts) {
-    const box *b = &c->cells.footprint;
+    box part = ilsai_box_fold(problem->g, &c->cells.footprint);
     double start = ilsai_clock();
-    size_t corner = (size_t)ilsai_grid_cell(problem->g, b->x0, b->y0);
+    size_t corner = (size_t)ilsai_grid_cell(problem->g, part.x0, part.y0);
     ilsai_elasticity_multiply(problem->e, problem->width + corner, c->matrix.pressure + corner,
                               (size_t)problem->g->nx);
     counts->seconds_product += ilsai_clock() - start;
@@ -363,7 +349,6 @@ static ilsa_status newton(coupled *c, const coupled_problem *problem, coupled_co
         }
         double length = step_length(c, problem);
         made = take_step(c, problem, length, late);
-        share_cells(set_images, c, problem);
         if (isnan(made.change)) {
             return ILSA_STEP_REJECTED;
         }
@@ -400,6 +385,14 @@ static ilsa_status find_responses(coupled *c, const coupled_problem *problem) {
     return ILSA_OK;
 }
 
+static ilsa_status set_box(const coupled_problem *problem) {
+    const grid *g = problem->g;
+    box part = ilsai_box_fold(g, &problem->footprint);
+    return ilsai_elasticity_set_box(problem->e, (int)ilsai_box_columns(&part),
+                                    (int)ilsai_box_rows(&part), ilsai_grid_about_x(g),
+                                    ilsai_grid_about_y(g));
+}
+
 ilsa_status ilsai_coupled_solve(coupled *c, const coupled_problem *problem,
                                 coupled_counts *counts) {
     ilsa_status status =
@@ -407,9 +400,7 @@ ilsa_status ilsai_coupled_solve(coupled *c, const coupled_problem *problem,
     if (status != ILSA_OK || reserve(c, c->cells.count) != ILSA_OK) {
         return ILSA_ERR_MEMORY;
     }
-    int bx = problem->footprint.x1 - problem->footprint.x0 + 1;
-    int by = problem->footprint.y1 - problem->footprint.y0 + 1;
-    if (ilsai_elasticity_set_box(problem->e, bx, by) != ILSA_OK) {
+    if (set_box(problem) != ILSA_OK) {
         return ILSA_ERR_MEMORY;
     }
     c->matrix.g = problem->g;
@@ -424,7 +415,6 @@ ilsa_status ilsai_coupled_solve(coupled *c, const coupled_problem *problem,
         contact faces = contact_of(c, problem, 0);
         ilsai_contact_begin(&faces);
     }
-    share_cells(set_images, c, problem);
     c->matrix.threads = c->fluid.threads = problem->threads;
     ilsai_elasticity_share(problem->e, problem->threads);
     c->matrix.products = 0;

@@ -16,7 +16,7 @@ typedef struct coupled coupled;
 coupled *ilsai_coupled_create(const ilsa_mesh_def *mesh);
 void ilsai_coupled_destroy(coupled **c);
 
-/* All arrays are over the mesh; only representative cells are read and written but for width. */
+/* All arrays are over the mesh; only representative cells are read and written. */
 typedef struct coupled_problem {
     const grid *g;
     elasticity *e;
@@ -29,7 +29,7 @@ typedef struct coupled_problem {
     const tip_response *response; /* of cells at the front to the widths, NULL: none */
     int response_count;
     contact_fields contact; /* where cells may close */
-    double *width;          /* in: first guess, and the tip widths; out: solution, with images */
+    double *width;          /* in: first guess, and the tip widths; out: solution */
     double *pressure;       /* in: first guess in tip cells; out: solution */
     double dt, mu_prime;
     ilsa_linear_solver linear;

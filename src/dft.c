@@ -6,23 +6,28 @@
 #include <string.h>
 
 /*
- * One direction. On c cells around the origin, s = i - (c - 1) / 2, padded to a period of 2 c, the
- * functions cos(pi k s / c), k = 0 .. c - 1, and sin(pi k s / c), k = 1 .. c, are all there are,
- * and an even kernel multiplies each by a number: its spectrum at k. Cosines see only the even
- * part of the widths and sines the odd part, so that either matrix is c by c / 2.
+ * One direction of c cells, padded to a period. Without an axis the period is 2 c, and around the
+ * origin, s = i - (c - 1) / 2, the functions cos(pi k s / c), k = 0 .. c - 1, and sin(pi k s / c),
+ * k = 1 .. c, are all there are; an even kernel multiplies each by a number: its spectrum at k.
+ * Cosines see only the even part of the widths and sines the odd part, so that either matrix is c
+ * by c / 2. With an axis there are cosines only, 2 c by c, of the distance s to it: their period is
+ * what the cells and their images fill, twice.
  */
 typedef struct basis {
-    int c;
-    double *cosine, *sine; /* row k or k - 1, column i < c / 2 */
+    int c, half_period;
+    mirror_axis about;
+    int blocks;       /* of waves: cosines, then sines if there are any */
+    int waves, parts; /* of a block */
+    double *matrix;   /* block by block, row by wave, column by part */
 } basis;
 
 /*
- * Widths go through four arrays. Rows and columns of `folded` are first even, then odd parts;
- * those of `waves` first cosines, then sines; `half_way` has rows of parts and columns of waves.
+ * Widths go through four arrays. Rows and columns of `folded` are parts, those of `waves` waves,
+ * both block by block; `half_way` has rows of parts and columns of waves.
  */
 struct dft {
     basis x, y;
-    double *spectrum; /* (cy + 1) by (cx + 1), with the factors of the transform back */
+    double *spectrum; /* by wave numbers 0 .. half_period, with the factors of the transform back */
     double *folded;   /* cy by cx */
     double *half_way; /* cy by 2 cx */
     double *waves;    /* 2 cy by 2 cx */
@@ -37,19 +42,32 @@ static double angle(long n, int c) {
     return 3.14159265358979323846 * (double)(n % (4L * c)) / (2 * c);
 }
 
-static int basis_create(basis *b, int c) {
-    size_t count = (size_t)c, half = count / 2;
+/* Twice the coordinate of cell i. */
+static long place(const basis *b, int i) {
+    return b->about == MIRROR_NONE ? 2L * i - b->c + 1 : 2L * i + (b->about == MIRROR_EDGE);
+}
+
+static double *block(const basis *b, int n) {
+    return b->matrix + (size_t)n * (size_t)b->waves * (size_t)b->parts;
+}
+
+static int basis_create(basis *b, int c, mirror_axis about) {
     b->c = c;
-    b->cosine = alloc_doubles(count, half);
-    b->sine = alloc_doubles(count, half);
-    if (!b->cosine || !b->sine)
+    b->about = about;
+    b->half_period = about == MIRROR_NONE ? c : 2 * c - (about == MIRROR_CENTRE);
+    b->blocks = about == MIRROR_NONE ? 2 : 1;
+    b->waves = 2 * c / b->blocks;
+    b->parts = c / b->blocks;
+    b->matrix = alloc_doubles(2 * (size_t)c, (size_t)b->parts);
+    if (!b->matrix)
         return 0;
-    for (int k = 0; k < c; k++)
-        for (int i = 0; i < c / 2; i++) {
-            size_t n = (size_t)k * half + (size_t)i;
-            b->cosine[n] = cos(angle((long)k * (2 * i - c + 1), c));
-            b->sine[n] = sin(angle((long)(k + 1) * (2 * i - c + 1), c));
-        }
+    double *value = b->matrix;
+    for (int n = 0; n < b->blocks; n++)
+        for (int k = n; k < b->waves + n; k++)
+            for (int i = 0; i < b->parts; i++) {
+                double turn = angle(k * place(b, i), b->half_period);
+                *value++ = n == 0 ? cos(turn) : sin(turn);
+            }
     return 1;
 }
 
@@ -77,12 +95,13 @@ static double wave_weight(int k, int c) {
 }
 
 static int make_spectrum(dft *d, const double *kernel) {
-    int cx = d->x.c, cy = d->y.c;
+    int cx = d->x.half_period, cy = d->y.half_period;
+    int row = ilsai_mirror_offsets(d->x.about, d->x.c);
     double *ax = even_transform(cx), *ay = even_transform(cy);
     double *half = alloc_doubles((size_t)cy, (size_t)cx + 1);
     int good = ax && ay && half;
     if (good) {
-        multiply(CblasNoTrans, CblasTrans, cy, cx + 1, cx, kernel, cx, ax, cx, half, cx + 1);
+        multiply(CblasNoTrans, CblasTrans, cy, cx + 1, cx, kernel, row, ax, cx, half, cx + 1);
         multiply(CblasNoTrans, CblasNoTrans, cy + 1, cx + 1, cy, ay, cy, half, cx + 1, d->spectrum,
                  cx + 1);
         double *value = d->spectrum;
@@ -96,31 +115,31 @@ static int make_spectrum(dft *d, const double *kernel) {
     return good;
 }
 
-dft *ilsai_dft_create(int cx, int cy, const double *kernel) {
-    dft *d = calloc(1, sizeof *d);
-    if (!d)
-        return NULL;
-    size_t x = (size_t)cx, y = (size_t)cy;
-    d->spectrum = alloc_doubles(y + 1, x + 1);
+static int allocate(dft *d) {
+    size_t x = (size_t)d->x.c, y = (size_t)d->y.c;
+    d->spectrum = alloc_doubles((size_t)d->y.half_period + 1, (size_t)d->x.half_period + 1);
     d->folded = alloc_doubles(y, x);
     d->half_way = alloc_doubles(y, 2 * x);
     d->waves = alloc_doubles(2 * y, 2 * x);
-    if (!d->spectrum || !d->folded || !d->half_way || !d->waves || !basis_create(&d->x, cx) ||
-        !basis_create(&d->y, cy) || !make_spectrum(d, kernel))
-        ilsai_dft_destroy(&d);
-    return d;
+    return d->spectrum && d->folded && d->half_way && d->waves;
 }
 
-static void basis_destroy(basis *b) {
-    free(b->cosine);
-    free(b->sine);
+dft *ilsai_dft_create(int cx, int cy, mirror_axis about_x, mirror_axis about_y,
+                      const double *kernel) {
+    dft *d = calloc(1, sizeof *d);
+    if (!d)
+        return NULL;
+    if (!basis_create(&d->x, cx, about_x) || !basis_create(&d->y, cy, about_y) || !allocate(d) ||
+        !make_spectrum(d, kernel))
+        ilsai_dft_destroy(&d);
+    return d;
 }
 
 void ilsai_dft_destroy(dft **d) {
     if (!*d)
         return;
-    basis_destroy(&(*d)->x);
-    basis_destroy(&(*d)->y);
+    free((*d)->x.matrix);
+    free((*d)->y.matrix);
     free((*d)->spectrum);
     free((*d)->folded);
     free((*d)->half_way);
@@ -129,8 +148,16 @@ void ilsai_dft_destroy(dft **d) {
     *d = NULL;
 }
 
-/* Even and odd part of `count` <= c widths, zeros behind them. */
-static void fold_row(const double *w, size_t count, size_t c, double *part) {
+/*
+ * `count` <= c widths, zeros behind them: their even and odd part; with an axis, with their images.
+ */
+static void fold_row(const basis *b, const double *w, size_t count, double *part) {
+    size_t c = (size_t)b->c;
+    if (b->about != MIRROR_NONE) {
+        for (size_t i = 0; i < c; i++)
+            part[i] = i < count ? ilsai_mirror_count(b->about, (int)i) * w[i] : 0;
+        return;
+    }
     for (size_t i = 0; i < c / 2; i++) {
         double low = i < count ? w[i] : 0, high = c - 1 - i < count ? w[c - 1 - i] : 0;
         part[i] = low + high;
@@ -138,7 +165,12 @@ static void fold_row(const double *w, size_t count, size_t c, double *part) {
     }
 }
 
-static void unfold_row(const double *part, size_t count, size_t c, double *p) {
+static void unfold_row(const basis *b, const double *part, size_t count, double *p) {
+    size_t c = (size_t)b->c;
+    if (b->about != MIRROR_NONE) {
+        memcpy(p, part, count * sizeof *p);
+        return;
+    }
     for (size_t i = 0; i < c / 2; i++) {
         if (i < count)
             p[i] = part[i] + part[c / 2 + i];
@@ -147,60 +179,71 @@ static void unfold_row(const double *part, size_t count, size_t c, double *p) {
     }
 }
 
-/* Rows j and cy - 1 - j of one array: their sum and difference, rows j and cy / 2 + j of another.
+/*
+ * Rows j and c - 1 - j of one array: their sum and difference, rows j and c / 2 + j of another.
+ * With an axis: row j with its image.
  */
-static void fold_rows(const double *row, size_t cy, size_t length, double *part) {
-    for (size_t j = 0; j < cy / 2; j++)
+static void fold_rows(const basis *b, const double *row, size_t length, double *part) {
+    size_t c = (size_t)b->c;
+    for (size_t j = 0; b->about != MIRROR_NONE && j < c; j++)
+        for (size_t i = 0; i < length; i++)
+            part[j * length + i] = ilsai_mirror_count(b->about, (int)j) * row[j * length + i];
+    for (size_t j = 0; b->about == MIRROR_NONE && j < c / 2; j++)
         for (size_t i = 0; i < length; i++) {
-            double low = row[j * length + i], high = row[(cy - 1 - j) * length + i];
+            double low = row[j * length + i], high = row[(c - 1 - j) * length + i];
             part[j * length + i] = low + high;
-            part[(cy / 2 + j) * length + i] = low - high;
+            part[(c / 2 + j) * length + i] = low - high;
         }
 }
 
-static void unfold_rows(const double *part, size_t cy, size_t length, double *row) {
-    for (size_t j = 0; j < cy / 2; j++)
+static void unfold_rows(const basis *b, const double *part, size_t length, double *row) {
+    size_t c = (size_t)b->c;
+    if (b->about != MIRROR_NONE) {
+        memcpy(row, part, c * length * sizeof *row);
+        return;
+    }
+    for (size_t j = 0; j < c / 2; j++)
         for (size_t i = 0; i < length; i++) {
-            double even = part[j * length + i], odd = part[(cy / 2 + j) * length + i];
+            double even = part[j * length + i], odd = part[(c / 2 + j) * length + i];
             row[j * length + i] = even + odd;
-            row[(cy - 1 - j) * length + i] = even - odd;
+            row[(c - 1 - j) * length + i] = even - odd;
         }
 }
 
 static void to_waves(dft *d) {
-    int cx = d->x.c, cy = d->y.c, hx = cx / 2, hy = cy / 2, mx = 2 * cx;
-    const double *odd_rows = d->half_way + (size_t)hy * (size_t)mx;
-    double *sine_rows = d->waves + (size_t)cy * (size_t)mx;
-    multiply(CblasNoTrans, CblasTrans, cy, cx, hx, d->folded, cx, d->x.cosine, hx, d->half_way, mx);
-    multiply(CblasNoTrans, CblasTrans, cy, cx, hx, d->folded + hx, cx, d->x.sine, hx,
-             d->half_way + cx, mx);
-    multiply(CblasNoTrans, CblasNoTrans, cy, mx, hy, d->y.cosine, hy, d->half_way, mx, d->waves,
-             mx);
-    multiply(CblasNoTrans, CblasNoTrans, cy, mx, hy, d->y.sine, hy, odd_rows, mx, sine_rows, mx);
+    const basis *x = &d->x, *y = &d->y;
+    int mx = 2 * x->c;
+    for (int n = 0; n < x->blocks; n++)
+        multiply(CblasNoTrans, CblasTrans, y->c, x->waves, x->parts, d->folded + n * x->parts, x->c,
+                 block(x, n), x->parts, d->half_way + n * x->waves, mx);
+    for (int n = 0; n < y->blocks; n++)
+        multiply(CblasNoTrans, CblasNoTrans, y->waves, mx, y->parts, block(y, n), y->parts,
+                 d->half_way + (size_t)(n * y->parts) * (size_t)mx, mx,
+                 d->waves + (size_t)(n * y->waves) * (size_t)mx, mx);
 }
 
 static void from_waves(dft *d) {
-    int cx = d->x.c, cy = d->y.c, hx = cx / 2, hy = cy / 2, mx = 2 * cx;
-    double *odd_rows = d->half_way + (size_t)hy * (size_t)mx;
-    const double *sine_rows = d->waves + (size_t)cy * (size_t)mx;
-    multiply(CblasTrans, CblasNoTrans, hy, mx, cy, d->y.cosine, hy, d->waves, mx, d->half_way, mx);
-    multiply(CblasTrans, CblasNoTrans, hy, mx, cy, d->y.sine, hy, sine_rows, mx, odd_rows, mx);
-    multiply(CblasNoTrans, CblasNoTrans, cy, hx, cx, d->half_way, mx, d->x.cosine, hx, d->folded,
-             cx);
-    multiply(CblasNoTrans, CblasNoTrans, cy, hx, cx, d->half_way + cx, mx, d->x.sine, hx,
-             d->folded + hx, cx);
+    const basis *x = &d->x, *y = &d->y;
+    int mx = 2 * x->c;
+    for (int n = 0; n < y->blocks; n++)
+        multiply(CblasTrans, CblasNoTrans, y->parts, mx, y->waves, block(y, n), y->parts,
+                 d->waves + (size_t)(n * y->waves) * (size_t)mx, mx,
+                 d->half_way + (size_t)(n * y->parts) * (size_t)mx, mx);
+    for (int n = 0; n < x->blocks; n++)
+        multiply(CblasNoTrans, CblasNoTrans, y->c, x->parts, x->waves, d->half_way + n * x->waves,
+                 mx, block(x, n), x->parts, d->folded + n * x->parts, x->c);
 }
 
-/* The four kinds of waves share one spectrum: sines stand one wave number further on. */
+/* All kinds of waves share one spectrum: sines stand one wave number further on. */
 static void multiply_by_spectrum(dft *d) {
-    size_t cx = (size_t)d->x.c, cy = (size_t)d->y.c;
-    for (size_t row = 0; row < 2 * cy; row++) {
-        const double *factor = d->spectrum + (row < cy ? row : row - cy + 1) * (cx + 1);
-        double *cosine = d->waves + row * 2 * cx, *sine = cosine + cx;
-        for (size_t k = 0; k < cx; k++) {
-            cosine[k] *= factor[k];
-            sine[k] *= factor[k + 1];
-        }
+    const basis *x = &d->x, *y = &d->y;
+    double *value = d->waves;
+    for (int row = 0; row < 2 * y->c; row++) {
+        int l = row < y->waves ? row : row - y->waves + 1;
+        const double *factor = d->spectrum + (size_t)l * ((size_t)x->half_period + 1);
+        for (int n = 0; n < x->blocks; n++)
+            for (int k = 0; k < x->waves; k++)
+                *value++ *= factor[k + n];
     }
 }
 
@@ -208,13 +251,13 @@ void ilsai_dft_convolve(dft *d, int bx, int by, const double *w, double *p, size
     size_t cx = (size_t)d->x.c, cy = (size_t)d->y.c, rows = (size_t)by, columns = (size_t)bx;
     double *row = d->half_way; /* free before the transforms and after them */
     for (size_t j = 0; j < rows; j++)
-        fold_row(w + j * stride, columns, cx, row + j * cx);
+        fold_row(&d->x, w + j * stride, columns, row + j * cx);
     memset(row + rows * cx, 0, (cy - rows) * cx * sizeof *row);
-    fold_rows(row, cy, cx, d->folded);
+    fold_rows(&d->y, row, cx, d->folded);
     to_waves(d);
     multiply_by_spectrum(d);
     from_waves(d);
-    unfold_rows(d->folded, cy, cx, row);
+    unfold_rows(&d->y, d->folded, cx, row);
     for (size_t j = 0; j < rows; j++)
-        unfold_row(row + j * cx, columns, cx, p + j * stride);
+        unfold_row(&d->x, row + j * cx, columns, p + j * stride);
 }

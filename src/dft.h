@@ -6,18 +6,24 @@
 #ifndef ILSAI_DFT_H
 #define ILSAI_DFT_H
 
+#include "mirror.h"
 #include <stddef.h>
 
 typedef struct dft dft;
 
 /*
- * For boxes of up to cx by cy cells, both even. kernel[j * cx + i] belongs to offsets (+-i, +-j).
- * NULL when memory does not suffice (cx^2 + cy^2 + 8 cx cy numbers).
+ * For boxes of up to cx by cy cells, both even. The kernel is given row by row for all offsets that
+ * there are, see mirror.h. NULL when memory does not suffice (cx^2 + cy^2 + 8 cx cy numbers,
+ * mirrored twice the squares and up to 11 cx cy).
  */
-dft *ilsai_dft_create(int cx, int cy, const double *kernel);
+dft *ilsai_dft_create(int cx, int cy, mirror_axis about_x, mirror_axis about_y,
+                      const double *kernel);
 void ilsai_dft_destroy(dft **d);
 
-/* p = kernel * w on a box of bx <= cx by by <= cy cells, rows stride apart. Allocates nothing. */
+/*
+ * p = kernel * (w and its images) on a box of bx <= cx by by <= cy cells, rows stride apart.
+ * Allocates nothing.
+ */
 void ilsai_dft_convolve(dft *d, int bx, int by, const double *w, double *p, size_t stride);
 
 #endif

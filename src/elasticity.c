@@ -57,8 +57,10 @@ double ilsai_kernel(long i, long j, double dx, double dy) {
 
 /* What a box needs; made anew only when the capacity changes. One of the transforms is there. */
 typedef struct engine {
-    int cx, cy;    /* largest box */
-    double *table; /* C(i, j) at j * cx + i */
+    int cx, cy; /* largest box */
+    mirror_axis about_x, about_y;
+    size_t row;    /* of the table */
+    double *table; /* C(i, j) at j * row + i */
     fft *by_fft;
     dft *by_blas;
 } engine;
@@ -87,14 +89,13 @@ static int capacity(int b) {
     return c * unit;
 }
 
-static double *make_table(const elasticity *e, int cx, int cy) {
-    double *table = malloc((size_t)cx * (size_t)cy * sizeof *table);
+static double *make_table(const elasticity *e, size_t columns, size_t rows) {
+    double *table = malloc(columns * rows * sizeof *table);
     if (!table)
         return NULL;
-    for (int j = 0; j < cy; j++)
-        for (int i = 0; i < cx; i++)
-            table[(size_t)j * (size_t)cx + (size_t)i] =
-                e->E_prime * ilsai_kernel(i, j, e->dx, e->dy);
+    for (size_t j = 0; j < rows; j++)
+        for (size_t i = 0; i < columns; i++)
+            table[j * columns + i] = e->E_prime * ilsai_kernel((long)i, (long)j, e->dx, e->dy);
     return table;
 }
 
@@ -105,18 +106,24 @@ static void engine_destroy(engine *n) {
     *n = (engine){0};
 }
 
-static ilsa_status engine_create(const elasticity *e, int cx, int cy, engine *made) {
-    engine n = {.cx = cx, .cy = cy, .table = make_table(e, cx, cy)};
-    if (n.table && e->use_fft)
-        n.by_fft = ilsai_fft_create(cx, cy, n.table);
-    else if (n.table)
-        n.by_blas = ilsai_dft_create(cx, cy, n.table);
-    if (!n.by_fft && !n.by_blas) {
-        engine_destroy(&n);
+/* Of a size and kind: cx, cy, about_x, about_y of *n. */
+static ilsa_status engine_create(const elasticity *e, engine *n) {
+    n->row = (size_t)ilsai_mirror_offsets(n->about_x, n->cx);
+    n->table = make_table(e, n->row, (size_t)ilsai_mirror_offsets(n->about_y, n->cy));
+    if (n->table && e->use_fft)
+        n->by_fft = ilsai_fft_create(n->cx, n->cy, n->about_x, n->about_y, n->table);
+    else if (n->table)
+        n->by_blas = ilsai_dft_create(n->cx, n->cy, n->about_x, n->about_y, n->table);
+    if (!n->by_fft && !n->by_blas) {
+        engine_destroy(n);
         return ILSA_ERR_MEMORY;
     }
-    *made = n;
     return ILSA_OK;
+}
+
+static int serves(const engine *n, const engine *other) {
+    return n->cx == other->cx && n->cy == other->cy && n->about_x == other->about_x &&
+           n->about_y == other->about_y;
 }
 
 int ilsai_elasticity_has_fft(void) {
@@ -147,11 +154,11 @@ void ilsai_elasticity_destroy(elasticity **e) {
     *e = NULL;
 }
 
-ilsa_status ilsai_elasticity_set_box(elasticity *e, int bx, int by) {
-    int cx = capacity(bx), cy = capacity(by);
-    if (cx != e->engine.cx || cy != e->engine.cy) {
-        engine made;
-        ilsa_status status = engine_create(e, cx, cy, &made);
+ilsa_status ilsai_elasticity_set_box(elasticity *e, int bx, int by, mirror_axis about_x,
+                                     mirror_axis about_y) {
+    engine made = {.cx = capacity(bx), .cy = capacity(by), .about_x = about_x, .about_y = about_y};
+    if (!serves(&e->engine, &made)) {
+        ilsa_status status = engine_create(e, &made);
         if (status)
             return status;
         engine_destroy(&e->engine);
@@ -182,7 +189,7 @@ edge_term ilsai_elasticity_edge(const elasticity *e, const edge_front *front) {
 }
 
 double ilsai_elasticity_entry(const elasticity *e, int i, int j) {
-    return e->engine.table[(size_t)abs(j) * (size_t)e->engine.cx + (size_t)abs(i)];
+    return e->engine.table[(size_t)abs(j) * e->engine.row + (size_t)abs(i)];
 }
 
 void ilsai_elasticity_multiply(elasticity *e, const double *w, double *p, size_t stride) {

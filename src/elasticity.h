@@ -9,6 +9,7 @@
 #define ILSAI_ELASTICITY_H
 
 #include "edge.h"
+#include "mirror.h"
 #include "team.h"
 #include <ilsa/solver.h>
 
@@ -29,16 +30,18 @@ void ilsai_elasticity_destroy(elasticity **e);
 int ilsai_elasticity_has_fft(void);
 
 /*
- * Makes ready for boxes of bx by by cells: kernel table, transform sizes, plans and buffers. Cheap
- * when the rounded-up size is the one in use. Which transform is used, and so every bit of a
- * product, depends on (bx, by) alone and not on earlier calls. On failure the box in use stays.
- * ILSA_ERR_MEMORY.
+ * Makes ready for boxes of bx by by cells: kernel table, transform sizes, plans and buffers. Where
+ * the box is one side of a mirror image about x or y, the cells beyond the axis, images of those
+ * within, count in products and need not be there. Cheap when the rounded-up size is the one in
+ * use. Which transform is used, and so every bit of a product, depends on the arguments alone and
+ * not on earlier calls. On failure the box in use stays. ILSA_ERR_MEMORY.
  */
-ilsa_status ilsai_elasticity_set_box(elasticity *e, int bx, int by);
+ilsa_status ilsai_elasticity_set_box(elasticity *e, int bx, int by, mirror_axis about_x,
+                                     mirror_axis about_y);
 
 /*
- * p[j * stride + i] = sum over the box of C(i - k, j - l) w[l * stride + k], for all 0 <= i < bx,
- * 0 <= j < by. w and p may not overlap. Allocates nothing.
+ * p[j * stride + i] = sum over the box, and its images, of C(i - k, j - l) w[l * stride + k], for
+ * all 0 <= i < bx, 0 <= j < by. w and p may not overlap. Allocates nothing.
  */
 void ilsai_elasticity_multiply(elasticity *e, const double *w, double *p, size_t stride);
 
@@ -55,7 +58,7 @@ void ilsai_elasticity_share(elasticity *e, team *threads);
 void ilsai_elasticity_set_edge(elasticity *e);
 edge_term ilsai_elasticity_edge(const elasticity *e, const edge_front *front);
 
-/* Entry C(i, j), |i| < bx, |j| < by, from the table of the box. */
+/* Entry C(i, j) between two cells of the box, or one and an image, from the table of the box. */
 double ilsai_elasticity_entry(const elasticity *e, int i, int j);
 
 #endif

@@ -22,15 +22,49 @@ typedef struct batch {
  */
 struct fft {
     int cx, cy;
+    mirror_axis about_x, about_y;
     double *rows;       /* cy x 2 cx: the box, zeros behind it */
     fftw_complex *half; /* 2 cy x (cx + 1): rows transformed */
     fftw_complex *full; /* 2 cy x (cx + 1): rows and columns transformed */
-    double *spectrum;   /* (cy + 1) x (cx + 1): of the kernel, real and even, by 1 / (4 cx cy) */
+    double *spectrum;   /* by 1 / (4 cx cy): (cy + 1) x `terms` x (cx + 1), see below */
+    int terms;
     batch rows_there, columns_there, columns_back, rows_back;
 };
 
 int ilsai_fft_available(void) {
     return 1;
+}
+
+/*
+ * The spectrum. Without images a coefficient U of the widths is multiplied by the kernel's T(k, l),
+ * which is real and even. Images add, in x, sum_k C(i + k) w_k, which is the convolution of the
+ * one-sided H(s) = C(s), s = 0 .. 2 cx - 2, with w(-k), so that
+ *
+ *     P(k, l) = TT U(k, l) + HT U(-k, l) + TH U(k, -l) + HH U(-k, -l)
+ *
+ * with the spectra of the kernel that is one-sided in x, in y, and in both. As w is real, U(-k, -l)
+ * is the conjugate of U(k, l): rows l and 2 cy - l of one column are mixed with each other only, by
+ * a symmetric real matrix of 4 x 4 on their real and imaginary parts (u, U of the upper row, v, V
+ * of the lower). One mirror leaves TT and two numbers of it, two mirrors leave it full.
+ */
+enum { IMAGE_R = 1, IMAGE_I, TERMS_PLAIN = 1, TERMS_HALF = 3 };
+enum {
+    UPPER_RR,
+    UPPER_RI,
+    UPPER_II,
+    LOWER_RR,
+    LOWER_RI,
+    LOWER_II,
+    UPPER_LOWER_RR,
+    UPPER_LOWER_RI,
+    UPPER_LOWER_IR,
+    UPPER_LOWER_II,
+    TERMS_QUARTER
+};
+
+static int terms_of(mirror_axis about_x, mirror_axis about_y) {
+    int mirrors = (about_x != MIRROR_NONE) + (about_y != MIRROR_NONE);
+    return mirrors == 0 ? TERMS_PLAIN : mirrors == 1 ? TERMS_HALF : TERMS_QUARTER;
 }
 
 static size_t row_length(const fft *f) {
@@ -46,7 +80,7 @@ static int allocate(fft *f) {
     f->rows = fftw_alloc_real(cy * row_length(f));
     f->half = fftw_alloc_complex(2 * cy * half_length(f));
     f->full = fftw_alloc_complex(2 * cy * half_length(f));
-    f->spectrum = fftw_alloc_real((cy + 1) * half_length(f));
+    f->spectrum = fftw_alloc_real((cy + 1) * (size_t)f->terms * half_length(f));
     return f->rows && f->half && f->full && f->spectrum;
 }
 
@@ -126,49 +160,124 @@ static void columns_back(fft *f, int part) {
     fftw_execute_dft(p, f->full + first, f->half + first);
 }
 
-static void clear_lower_half(fft *f) {
-    size_t count = (size_t)f->cy * half_length(f);
-    memset(f->half + count, 0, count * sizeof *f->half);
-}
-
-/* The kernel of row j in wrapped order; offset cx does not occur in a box and counts as zero. */
-static void lay_out_kernel_row(const fft *f, const double *kernel, size_t j) {
+/*
+ * Row j < cy of the kernel, or of its one-sided part, into row `to`, in wrapped order. Offset cx
+ * does not occur in a box, nor 2 cx - 1 between a cell and an image: they count as zero.
+ */
+static void lay_out_kernel_row(const fft *f, const double *kernel, int one_sided, double *row) {
     size_t cx = (size_t)f->cx, mx = row_length(f);
-    double *row = f->rows + j * mx;
-    memcpy(row, kernel + j * cx, cx * sizeof *row);
+    if (one_sided) {
+        memcpy(row, kernel + (f->about_x == MIRROR_EDGE), (mx - 1) * sizeof *row);
+        row[mx - 1] = 0;
+        return;
+    }
+    memcpy(row, kernel, cx * sizeof *row);
     row[cx] = 0;
     for (size_t i = 1; i < cx; i++)
         row[mx - i] = row[i];
 }
 
-/* An even kernel has an even real spectrum: rows 0 .. cy of it are all there is to keep. */
-static void transform_kernel(fft *f, const double *kernel) {
-    size_t cy = (size_t)f->cy, h = half_length(f);
-    for (size_t j = 0; j < cy; j++)
-        lay_out_kernel_row(f, kernel, j);
+/* Transforms cy rows of the kernel, row `first` and those that follow, into the upper half. */
+static void transform_kernel_rows(fft *f, const double *kernel, size_t first, int one_sided) {
+    size_t cy = (size_t)f->cy, mx = row_length(f);
+    size_t step = (size_t)ilsai_mirror_offsets(f->about_x, f->cx);
+    size_t end = (size_t)ilsai_mirror_offsets(f->about_y, f->cy);
+    for (size_t j = 0; j < cy; j++) {
+        double *row = f->rows + j * mx;
+        if (first + j < end)
+            lay_out_kernel_row(f, kernel + (first + j) * step, one_sided, row);
+        else
+            memset(row, 0, mx * sizeof *row);
+    }
     for (int part = 0; part < parts_of(f->cy); part++)
         rows_there(f, part);
-    clear_lower_half(f);
-    for (size_t j = 1; j < cy; j++)
-        memcpy(f->half + (2 * cy - j) * h, f->half + j * h, h * sizeof *f->half);
-    for (int part = 0; part < parts_of(f->cx + 1); part++)
-        columns_there(f, part);
-    double scale = 1 / (4 * (double)f->cx * (double)f->cy);
-    for (size_t n = 0; n < (cy + 1) * h; n++)
-        f->spectrum[n] = scale * f->full[n][0];
 }
 
-fft *ilsai_fft_create(int cx, int cy, const double *kernel) {
+/* The spectrum of the kernel into `full`, one-sided in x, in y, or not. */
+static void transform_kernel(fft *f, const double *kernel, int one_sided_x, int one_sided_y) {
+    size_t cy = (size_t)f->cy, h = half_length(f);
+    size_t first = one_sided_y && f->about_y == MIRROR_EDGE;
+    fftw_complex *lower = f->half + cy * h;
+    if (one_sided_y) {
+        transform_kernel_rows(f, kernel, cy + first, one_sided_x);
+        memcpy(lower, f->half, cy * h * sizeof *lower);
+    }
+    transform_kernel_rows(f, kernel, first, one_sided_x);
+    if (!one_sided_y) {
+        memset(lower, 0, h * sizeof *lower);
+        for (size_t j = 1; j < cy; j++)
+            memcpy(f->half + (2 * cy - j) * h, f->half + j * h, h * sizeof *lower);
+    }
+    for (int part = 0; part < parts_of(f->cx + 1); part++)
+        columns_there(f, part);
+}
+
+/*
+ * Adds what the spectrum in `full` contributes to the matrix, given its coefficients in the upper
+ * and the lower row. It multiplies conjugates if it is one-sided in x, and goes from row to row if
+ * it is so in one direction only.
+ */
+static void add_to_matrix(double *m, size_t step, int one_sided_x, int one_sided_y,
+                          const double *upper, const double *lower) {
+    double sign = one_sided_x ? -1 : 1;
+    if (one_sided_x != one_sided_y) {
+        m[UPPER_LOWER_RR * step] += upper[0];
+        m[UPPER_LOWER_II * step] += sign * upper[0];
+        m[UPPER_LOWER_RI * step] -= sign * upper[1];
+        m[UPPER_LOWER_IR * step] += upper[1];
+        return;
+    }
+    m[UPPER_RR * step] += upper[0];
+    m[UPPER_II * step] += sign * upper[0];
+    m[LOWER_RR * step] += lower[0];
+    m[LOWER_II * step] += sign * lower[0];
+    if (one_sided_x) {
+        m[UPPER_RI * step] += upper[1];
+        m[LOWER_RI * step] += lower[1];
+    }
+}
+
+static void add_spectrum(fft *f, const double *kernel, int one_sided_x, int one_sided_y) {
+    size_t cx = (size_t)f->cx, cy = (size_t)f->cy, h = half_length(f);
+    double scale = 1 / (4 * (double)f->cx * (double)f->cy);
+    transform_kernel(f, kernel, one_sided_x, one_sided_y);
+    for (size_t l = 0; l <= cy; l++)
+        for (size_t k = 0; k <= cx; k++) {
+            double *up = f->full[l * h + k], *low = f->full[(l ? 2 * cy - l : 0) * h + k];
+            double upper[2] = {scale * up[0], scale * up[1]};
+            double lower[2] = {scale * low[0], scale * low[1]};
+            double *m = f->spectrum + l * (size_t)f->terms * h + k;
+            if (f->terms == TERMS_QUARTER) {
+                add_to_matrix(m, h, one_sided_x, one_sided_y, upper, lower);
+            } else if (one_sided_x || one_sided_y) {
+                m[IMAGE_R * h] = upper[0];
+                m[IMAGE_I * h] = upper[1];
+            } else {
+                m[0] = upper[0];
+            }
+        }
+}
+
+static void make_spectrum(fft *f, const double *kernel) {
+    size_t count = ((size_t)f->cy + 1) * (size_t)f->terms * half_length(f);
+    memset(f->spectrum, 0, count * sizeof *f->spectrum);
+    for (int y = 0; y <= (f->about_y != MIRROR_NONE); y++)
+        for (int x = 0; x <= (f->about_x != MIRROR_NONE); x++)
+            add_spectrum(f, kernel, x, y);
+}
+
+fft *ilsai_fft_create(int cx, int cy, mirror_axis about_x, mirror_axis about_y,
+                      const double *kernel) {
     fft *f = calloc(1, sizeof *f);
     if (!f)
         return NULL;
-    f->cx = cx;
-    f->cy = cy;
+    *f = (fft){.cx = cx, .cy = cy, .about_x = about_x, .about_y = about_y};
+    f->terms = terms_of(about_x, about_y);
     if (!allocate(f) || !plan(f)) {
         ilsai_fft_destroy(&f);
         return NULL;
     }
-    transform_kernel(f, kernel);
+    make_spectrum(f, kernel);
     return f;
 }
 
@@ -202,7 +311,10 @@ typedef struct product {
     double *p;
 } product;
 
-/* Rows first .. end - 1 of the box, zeros where it does not reach. */
+/*
+ * Rows first .. end - 1 of the box, zeros where it does not reach. A cell on an axis is met twice,
+ * as itself and as its image.
+ */
 static void lay_out_rows(const product *c, size_t first, size_t end) {
     size_t mx = row_length(c->f);
     for (size_t j = first; j < end; j++) {
@@ -210,6 +322,10 @@ static void lay_out_rows(const product *c, size_t first, size_t end) {
         size_t filled = j < c->by ? c->bx : 0;
         memcpy(row, c->w + j * c->stride, filled * sizeof *row);
         memset(row + filled, 0, (mx - filled) * sizeof *row);
+        if (c->f->about_x == MIRROR_CENTRE)
+            row[0] *= 0.5;
+        for (size_t i = 0; i < filled && j == 0 && c->f->about_y == MIRROR_CENTRE; i++)
+            row[i] *= 0.5;
     }
 }
 
@@ -226,17 +342,77 @@ static void transform_rows(void *context, int first, int end) {
     }
 }
 
+/* Coefficients first .. end - 1 of two rows, which are the same one if it is its own image. */
+typedef void multiply_rows(const double *m, size_t step, fftw_complex *upper, fftw_complex *lower,
+                           size_t first, size_t end);
+
+static void multiply_plain(const double *m, size_t step, fftw_complex *upper, fftw_complex *lower,
+                           size_t first, size_t end) {
+    (void)step;
+    for (size_t i = first; i < end; i++) {
+        upper[i][0] *= m[i];
+        upper[i][1] *= m[i];
+    }
+    for (size_t i = first; i < end && lower != upper; i++) {
+        lower[i][0] *= m[i];
+        lower[i][1] *= m[i];
+    }
+}
+
+static void multiply_mirrored_x(const double *m, size_t step, fftw_complex *upper,
+                                fftw_complex *lower, size_t first, size_t end) {
+    const double *re = m + IMAGE_R * step, *im = m + IMAGE_I * step;
+    for (size_t i = first; i < end; i++) {
+        double ur = upper[i][0], ui = upper[i][1], lr = lower[i][0], li = lower[i][1];
+        lower[i][0] = m[i] * lr + re[i] * ur + im[i] * ui;
+        lower[i][1] = m[i] * li + im[i] * ur - re[i] * ui;
+        upper[i][0] = m[i] * ur + re[i] * lr + im[i] * li;
+        upper[i][1] = m[i] * ui + im[i] * lr - re[i] * li;
+    }
+}
+
+static void multiply_mirrored_y(const double *m, size_t step, fftw_complex *upper,
+                                fftw_complex *lower, size_t first, size_t end) {
+    const double *re = m + IMAGE_R * step, *im = m + IMAGE_I * step;
+    for (size_t i = first; i < end; i++) {
+        double ur = upper[i][0], ui = upper[i][1], lr = lower[i][0], li = lower[i][1];
+        lower[i][0] = m[i] * lr + re[i] * ur + im[i] * ui;
+        lower[i][1] = m[i] * li + re[i] * ui - im[i] * ur;
+        upper[i][0] = m[i] * ur + re[i] * lr - im[i] * li;
+        upper[i][1] = m[i] * ui + re[i] * li + im[i] * lr;
+    }
+}
+
+static void multiply_quarter(const double *m, size_t step, fftw_complex *upper, fftw_complex *lower,
+                             size_t first, size_t end) {
+    for (size_t i = first; i < end; i++) {
+        const double *a = m + i;
+        double ur = upper[i][0], ui = upper[i][1], lr = lower[i][0], li = lower[i][1];
+        lower[i][0] = a[UPPER_LOWER_RR * step] * ur + a[UPPER_LOWER_IR * step] * ui +
+                      a[LOWER_RR * step] * lr + a[LOWER_RI * step] * li;
+        lower[i][1] = a[UPPER_LOWER_RI * step] * ur + a[UPPER_LOWER_II * step] * ui +
+                      a[LOWER_RI * step] * lr + a[LOWER_II * step] * li;
+        upper[i][0] = a[UPPER_RR * step] * ur + a[UPPER_RI * step] * ui +
+                      a[UPPER_LOWER_RR * step] * lr + a[UPPER_LOWER_RI * step] * li;
+        upper[i][1] = a[UPPER_RI * step] * ur + a[UPPER_II * step] * ui +
+                      a[UPPER_LOWER_IR * step] * lr + a[UPPER_LOWER_II * step] * li;
+    }
+}
+
+static multiply_rows *multiplication(const fft *f) {
+    return f->terms == TERMS_PLAIN     ? multiply_plain
+           : f->terms == TERMS_QUARTER ? multiply_quarter
+           : f->about_x == MIRROR_NONE ? multiply_mirrored_y
+                                       : multiply_mirrored_x;
+}
+
 /* Columns first .. end - 1. */
 static void multiply_by_spectrum(fft *f, size_t first, size_t end) {
-    size_t my = 2 * (size_t)f->cy, h = half_length(f);
-    for (size_t j = 0; j < my; j++) {
-        const double *factor = f->spectrum + (2 * j <= my ? j : my - j) * h;
-        fftw_complex *value = f->full + j * h;
-        for (size_t i = first; i < end; i++) {
-            value[i][0] *= factor[i];
-            value[i][1] *= factor[i];
-        }
-    }
+    size_t cy = (size_t)f->cy, h = half_length(f);
+    multiply_rows *multiply = multiplication(f);
+    for (size_t l = 0; l <= cy; l++)
+        multiply(f->spectrum + l * (size_t)f->terms * h, h, f->full + l * h,
+                 f->full + (l ? 2 * cy - l : 0) * h, first, end);
 }
 
 /* Zeros into the lower half of columns first .. end - 1. */

@@ -4,9 +4,12 @@ int ilsai_fft_available(void) {
     return 0;
 }
 
-fft *ilsai_fft_create(int cx, int cy, const double *kernel) {
+fft *ilsai_fft_create(int cx, int cy, mirror_axis about_x, mirror_axis about_y,
+                      const double *kernel) {
     (void)cx;
     (void)cy;
+    (void)about_x;
+    (void)about_y;
     (void)kernel;
     return NULL;
 }

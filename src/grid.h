@@ -2,12 +2,13 @@
  * The cells a step works on: the mesh, folded where the scene is symmetric.
  *
  * With mirror symmetry about x = 0 only the columns i >= lo_x are solved for; the cell beyond the
- * axis is the image of the one before it. Loops run over such representative cells; the elasticity
- * product alone needs the images, which ilsai_grid_images lists.
+ * axis is the image of the one before it. Loops run over such representative cells, of which
+ * ilsai_grid_images lists the images; the elasticity product knows the axes.
  */
 #ifndef ILSAI_GRID_H
 #define ILSAI_GRID_H
 
+#include "mirror.h"
 #include <ilsa/mesh.h>
 #include <stddef.h>
 
@@ -30,6 +31,15 @@ static inline grid ilsai_grid(const ilsa_mesh_def *mesh, int mirror_x, int mirro
     g.lo_x = mirror_x ? g.nx / 2 : 0;
     g.lo_y = mirror_y ? g.ny / 2 : 0;
     return g;
+}
+
+/* Where the axes lie, seen from the first representative column and row. */
+static inline mirror_axis ilsai_grid_about_x(const grid *g) {
+    return !g->mirror_x ? MIRROR_NONE : g->nx % 2 ? MIRROR_CENTRE : MIRROR_EDGE;
+}
+
+static inline mirror_axis ilsai_grid_about_y(const grid *g) {
+    return !g->mirror_y ? MIRROR_NONE : g->ny % 2 ? MIRROR_CENTRE : MIRROR_EDGE;
 }
 
 static inline int ilsai_grid_cell(const grid *g, int i, int j) {

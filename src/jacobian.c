@@ -102,19 +102,12 @@ static void share_cells(team_function *function, jacobian *m, const double *x, d
     ilsai_team_run(m->threads, function, &l, m->a->count, ILSAI_SHARE_CELLS);
 }
 
-static void set_width(const jacobian *m, int k, double w) {
-    int image[4], cell = m->a->cell[k];
-    int count = ilsai_grid_images(m->g, cell % m->g->nx, cell / m->g->nx, image);
-    for (int c = 0; c < count; c++) {
-        m->width[image[c]] = w;
-    }
-}
-
 static void set_widths(void *context, int first, int end) {
     const loop *l = context;
     const jacobian *m = l->m;
     for (int k = first; k < end; k++) {
-        set_width(m, k, is_free(m, k) ? l->x[k] : ilsai_jacobian_tip_width(m, k, l->x));
+        m->width[m->a->cell[k]] =
+            is_free(m, k) ? l->x[k] : ilsai_jacobian_tip_width(m, k, l->x);
     }
 }
 
@@ -133,10 +126,10 @@ static void complete_pressures(void *context, int first, int end) {
 
 /* Pressure changes that the width changes x of the channel cells bring about, and the tip's own. */
 static void apply_elasticity(jacobian *m, const double *x) {
-    const active *a = m->a;
     share_cells(set_widths, m, x, NULL);
     double start = ilsai_clock();
-    size_t corner = (size_t)ilsai_grid_cell(m->g, a->footprint.x0, a->footprint.y0);
+    box part = ilsai_box_fold(m->g, &m->a->footprint);
+    size_t corner = (size_t)ilsai_grid_cell(m->g, part.x0, part.y0);
     ilsai_elasticity_multiply(m->e, m->width + corner, m->pressure + corner, (size_t)m->g->nx);
     m->seconds_product += ilsai_clock() - start;
     m->products++;
@@ -146,7 +139,7 @@ static void apply_elasticity(jacobian *m, const double *x) {
 static void clear_widths(void *context, int first, int end) {
     const loop *l = context;
     for (int k = first; k < end; k++) {
-        set_width(l->m, k, 0);
+        l->m->width[l->m->a->cell[k]] = 0;
     }
 }
 

@@ -96,39 +96,71 @@ static double *random_field(size_t count, uint64_t seed) {
     return w;
 }
 
-static double *product(elasticity *e, int bx, int by, const double *w, size_t stride) {
-    double *p = malloc(stride * (size_t)by * sizeof *p);
+/* The methods that this build has. */
+static size_t methods(ilsa_product *method) {
+    method[0] = ILSA_PRODUCT_BLAS;
+    method[1] = ILSA_PRODUCT_FFT;
+    return ilsai_elasticity_has_fft() ? 2 : 1;
+}
+
+static double *filled_with_nan(size_t count) {
+    double *p = malloc(count * sizeof *p);
     assert_non_null(p);
-    for (size_t n = 0; n < stride * (size_t)by; n++)
+    for (size_t n = 0; n < count; n++)
         p[n] = NAN;
-    assert_int_equal(ilsai_elasticity_set_box(e, bx, by), ILSA_OK);
+    return p;
+}
+
+static double *product(elasticity *e, int bx, int by, const double *w, size_t stride) {
+    double *p = filled_with_nan(stride * (size_t)by);
+    assert_int_equal(ilsai_elasticity_set_box(e, bx, by, MIRROR_NONE, MIRROR_NONE), ILSA_OK);
     ilsai_elasticity_multiply(e, w, p, stride);
     return p;
 }
 
-static double direct_at(int bx, int by, double dx, double dy, const double *w, size_t stride, int i,
-                        int j) {
+/* A box of cells, what it is one side of, and the cells' size. */
+typedef struct cells {
+    int bx, by;
+    mirror_axis about_x, about_y;
+    double dx, dy;
+} cells;
+
+/* Where cell i and its image stand; how many that are. */
+static int places(mirror_axis about, int i, int place[2]) {
+    place[0] = i;
+    place[1] = about == MIRROR_CENTRE ? -i : -1 - i;
+    return about == MIRROR_NONE || place[1] == i ? 1 : 2;
+}
+
+static double direct_at(const cells *at, const double *w, size_t stride, int i, int j) {
     double sum = 0;
-    for (int l = 0; l < by; l++)
-        for (int k = 0; k < bx; k++)
-            sum += ilsai_kernel(i - k, j - l, dx, dy) * w[(size_t)l * stride + (size_t)k];
+    int x[2], y[2];
+    for (int l = 0; l < at->by; l++)
+        for (int k = 0; k < at->bx; k++)
+            for (int n = places(at->about_y, l, y); n-- > 0;)
+                for (int m = places(at->about_x, k, x); m-- > 0;)
+                    sum += ilsai_kernel(i - x[m], j - y[n], at->dx, at->dy) *
+                           w[(size_t)l * stride + (size_t)k];
     return sum;
 }
 
 /* Largest difference to the direct sum over the largest value. */
-static double against_direct_sum(int bx, int by, size_t stride, double dx, double dy,
-                                 ilsa_product method) {
-    elasticity *e = make(1, dx, dy, method);
-    double *w = random_field(stride * (size_t)by, 7), *p = product(e, bx, by, w, stride);
+static double against_direct_sum(const cells *at, size_t stride, ilsa_product method) {
+    elasticity *e = make(1, at->dx, at->dy, method);
+    size_t count = stride * (size_t)at->by;
+    double *w = random_field(count, 7), *p = filled_with_nan(count);
     double worst = 0, largest = 0;
-    for (int j = 0; j < by; j++)
+    assert_int_equal(ilsai_elasticity_set_box(e, at->bx, at->by, at->about_x, at->about_y),
+                     ILSA_OK);
+    ilsai_elasticity_multiply(e, w, p, stride);
+    for (int j = 0; j < at->by; j++)
         for (int i = 0; i < (int)stride; i++) {
             double value = p[(size_t)j * stride + (size_t)i];
-            if (i >= bx) {
+            if (i >= at->bx) {
                 assert_true(isnan(value)); /* nothing is written beside the box */
                 continue;
             }
-            double truth = direct_at(bx, by, dx, dy, w, stride, i, j);
+            double truth = direct_at(at, w, stride, i, j);
             worst = fmax(worst, fabs(value - truth));
             largest = fmax(largest, fabs(truth));
         }
@@ -146,18 +178,82 @@ static void products_agree_with_direct_sum(void **state) {
     for (size_t c = 0; c < sizeof cell / sizeof *cell; c++) {
         double by_fft = 0, by_blas = 0;
         for (size_t b = 0; b < sizeof box / sizeof *box; b++) {
-            int bx = box[b][0], by = box[b][1];
-            double dx = cell[c][0], dy = cell[c][1];
-            size_t stride = (size_t)bx + 3 * (b % 2);
-            by_blas = fmax(by_blas, against_direct_sum(bx, by, stride, dx, dy, ILSA_PRODUCT_BLAS));
+            cells at = {box[b][0], box[b][1], MIRROR_NONE, MIRROR_NONE, cell[c][0], cell[c][1]};
+            size_t stride = (size_t)at.bx + 3 * (b % 2);
+            by_blas = fmax(by_blas, against_direct_sum(&at, stride, ILSA_PRODUCT_BLAS));
             if (ilsai_elasticity_has_fft())
-                by_fft = fmax(by_fft, against_direct_sum(bx, by, stride, dx, dy, ILSA_PRODUCT_FFT));
+                by_fft = fmax(by_fft, against_direct_sum(&at, stride, ILSA_PRODUCT_FFT));
         }
         print_message("product, cells %g x %g: off the direct sum by %.2g (FFT), %.2g (BLAS)\n",
                       cell[c][0], cell[c][1], by_fft, by_blas);
         assert_true(by_fft < 1e-12);
         assert_true(by_blas < 1e-12);
     }
+}
+
+/* Boxes of one cell, that fill their transform or not, long ones; axes of every kind. */
+static void mirrored_products_count_the_images(void **state) {
+    (void)state;
+    static const int box[][2] = {{1, 1},  {1, 9},   {9, 1},   {8, 8},  {10, 16},
+                                 {9, 17}, {24, 20}, {25, 23}, {3, 60}, {60, 3}};
+    ilsa_product method[2];
+    for (size_t m = methods(method); m-- > 0;)
+        for (int kind = 1; kind < 9; kind++) {
+            double worst = 0;
+            for (size_t b = 0; b < sizeof box / sizeof *box; b++) {
+                cells at = {box[b][0], box[b][1], kind % 3, kind / 3, 1, b % 3 ? 1 : 0.4};
+                size_t stride = (size_t)at.bx + 3 * (b % 2);
+                worst = fmax(worst, against_direct_sum(&at, stride, method[m]));
+            }
+            print_message("product, axes %d, %d: off the direct sum with images by %.2g (%s)\n",
+                          kind % 3, kind / 3, worst,
+                          method[m] == ILSA_PRODUCT_FFT ? "FFT" : "BLAS");
+            assert_true(worst < 1e-14);
+        }
+}
+
+/* Symmetric widths on the whole of a mirrored box. */
+static double *unfold(const cells *at, const double *w, int nx, int ny) {
+    double *all = malloc((size_t)nx * (size_t)ny * sizeof *all);
+    assert_non_null(all);
+    for (int j = 0; j < ny; j++)
+        for (int i = 0; i < nx; i++) {
+            int k = i - (nx - at->bx), l = j - (ny - at->by);
+            k = k >= 0 ? k : at->about_x == MIRROR_CENTRE ? -k : -1 - k;
+            l = l >= 0 ? l : at->about_y == MIRROR_CENTRE ? -l : -1 - l;
+            all[j * nx + i] = w[l * at->bx + k];
+        }
+    return all;
+}
+
+/* A half or a quarter of a fracture: the product is that of the whole. */
+static void mirrored_product_is_that_of_the_whole(void **state) {
+    (void)state;
+    enum { bx = 61, by = 40, count = bx * by };
+    ilsa_product method[2];
+    for (size_t m = methods(method); m-- > 0;)
+        for (int kind = 1; kind < 9; kind++) {
+            cells at = {bx, by, kind % 3, kind / 3, 1, 1};
+            int nx = at.about_x ? 2 * bx - (at.about_x == MIRROR_CENTRE) : bx;
+            int ny = at.about_y ? 2 * by - (at.about_y == MIRROR_CENTRE) : by;
+            elasticity *e = make(1, 1, 1, method[m]);
+            double *w = random_field(count, 17), *all = unfold(&at, w, nx, ny), p[count];
+            double *whole = product(e, nx, ny, all, (size_t)nx), worst = 0, largest = 0;
+            assert_int_equal(ilsai_elasticity_set_box(e, bx, by, at.about_x, at.about_y), ILSA_OK);
+            ilsai_elasticity_multiply(e, w, p, bx);
+            for (int n = 0; n < count; n++) {
+                double truth = whole[(n / bx + ny - by) * nx + n % bx + nx - bx];
+                worst = fmax(worst, fabs(p[n] - truth));
+                largest = fmax(largest, fabs(truth));
+            }
+            print_message("product, axes %d, %d, %d x %d of %d x %d: off by %.2g\n", kind % 3,
+                          kind / 3, bx, by, nx, ny, worst / largest);
+            assert_true(worst < 1e-14 * largest);
+            free(w);
+            free(all);
+            free(whole);
+            ilsai_elasticity_destroy(&e);
+        }
 }
 
 static void fft_and_blas_agree_on_a_large_box(void **state) {
@@ -178,13 +274,6 @@ static void fft_and_blas_agree_on_a_large_box(void **state) {
     free(q);
     ilsai_elasticity_destroy(&one);
     ilsai_elasticity_destroy(&other);
-}
-
-/* The methods that this build has. */
-static size_t methods(ilsa_product *method) {
-    method[0] = ILSA_PRODUCT_BLAS;
-    method[1] = ILSA_PRODUCT_FFT;
-    return ilsai_elasticity_has_fft() ? 2 : 1;
 }
 
 static double dot(const double *a, const double *b, size_t count) {
@@ -276,6 +365,7 @@ static void product_has_no_memory(void **state) {
             size_t stride = (size_t)other[b][0];
             double *v = random_field(stride * (size_t)other[b][1], 12);
             double *q = product(e, other[b][0], other[b][1], v, stride);
+            assert_int_equal(ilsai_elasticity_set_box(e, bx, by, b % 3, (b + 1) % 3), ILSA_OK);
             double *again = product(e, bx, by, w, bx);
             assert_memory_equal(p, again, count * sizeof *p);
             free(v);
@@ -315,8 +405,12 @@ static void entries_are_the_kernel(void **state) {
     ilsa_product method[2];
     for (size_t m = methods(method); m-- > 0;) {
         elasticity *e = make(8, 1, 1, method[m]);
+        assert_int_equal(ilsai_elasticity_set_box(e, 9, 6, MIRROR_EDGE, MIRROR_CENTRE), ILSA_OK);
+        for (int j = -10; j <= 10; j++)
+            for (int i = -17; i <= 17; i++)
+                assert_true(ilsai_elasticity_entry(e, i, j) == 8 * ilsai_kernel(i, j, 1, 1));
         assert_int_equal(ilsai_elasticity_method(e), method[m]);
-        assert_int_equal(ilsai_elasticity_set_box(e, 11, 6), ILSA_OK);
+        assert_int_equal(ilsai_elasticity_set_box(e, 11, 6, MIRROR_NONE, MIRROR_NONE), ILSA_OK);
         for (int j = -5; j <= 5; j++)
             for (int i = -10; i <= 10; i++)
                 assert_true(ilsai_elasticity_entry(e, i, j) == 8 * ilsai_kernel(i, j, 1, 1));
@@ -449,14 +543,15 @@ static void no_memory_keeps_the_box(void **state) {
     for (size_t m = methods(method); m-- > 0;) {
         elasticity *e = make(1, 1, 1, method[m]);
         double *w = random_field(count, 15), *p = product(e, bx, by, w, bx), again[count];
-        assert_int_equal(ilsai_elasticity_set_box(e, 1 << 30, 1 << 30), ILSA_ERR_MEMORY);
+        assert_int_equal(ilsai_elasticity_set_box(e, 1 << 30, 1 << 30, MIRROR_NONE, MIRROR_NONE),
+                         ILSA_ERR_MEMORY);
         ilsai_elasticity_multiply(e, w, again, bx);
         assert_memory_equal(p, again, sizeof again);
 #ifdef CAN_FAIL
         /* Not further with FFT: FFTW's planner aborts without memory. */
-        for (int most = 0; most < (method[m] == ILSA_PRODUCT_FFT ? 2 : 13); most++) {
+        for (int most = 0; most < (method[m] == ILSA_PRODUCT_FFT ? 2 : 11); most++) {
             allocations_left = most;
-            ilsa_status status = ilsai_elasticity_set_box(e, 40, 50);
+            ilsa_status status = ilsai_elasticity_set_box(e, 40, 50, MIRROR_NONE, MIRROR_NONE);
             allocations_left = -1;
             assert_int_equal(status, ILSA_ERR_MEMORY);
             ilsai_elasticity_multiply(e, w, again, bx);
@@ -482,6 +577,8 @@ int main(void) {
         cmocka_unit_test(kernel_scales_with_length),
         cmocka_unit_test(kernel_sums_to_zero),
         cmocka_unit_test(products_agree_with_direct_sum),
+        cmocka_unit_test(mirrored_products_count_the_images),
+        cmocka_unit_test(mirrored_product_is_that_of_the_whole),
         cmocka_unit_test(fft_and_blas_agree_on_a_large_box),
         cmocka_unit_test(product_is_symmetric_and_positive),
         cmocka_unit_test(product_is_translation_invariant),
