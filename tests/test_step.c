@@ -469,9 +469,15 @@ static void folded_scenes_give_the_whole_answer(void **unused) {
 /* With a sharp tolerance only rounding is left between the two. */
 static void folding_is_exact_but_for_tolerance(void **unused) {
     (void)unused;
-    host_scene scene = symmetric_scene(51, 40, 1);
-    scene.options.tolerance = 1e-9;
-    check_fold(scene, ILSA_SYMMETRY_XY, 1e-8);
+    for (int n = 0; n < 4; n++) {
+        int nx = 51 + n % 2, ny = 41 + n / 2;
+        for (int symmetry = ILSA_SYMMETRY_X; symmetry <= ILSA_SYMMETRY_XY; symmetry++) {
+            host_scene scene = symmetric_scene(nx, ny, symmetry != ILSA_SYMMETRY_X);
+            scene.options.tolerance = 1e-11;
+            scene.options.linear = ILSA_LINEAR_GMRES;
+            check_fold(scene, (ilsa_symmetry)symmetry, 1e-10);
+        }
+    }
 }
 
 /* Takes one of the three layers' stress for another in a running solver. */
