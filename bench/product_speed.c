@@ -1,4 +1,7 @@
-/* Wall time of one elasticity product by box size: FFT, BLAS, direct sum; and of a new box. */
+/*
+ * Wall time of one elasticity product by box size: FFT, BLAS, direct sum; of a half and a quarter
+ * of the box by FFT, where it is symmetric; and of a new box.
+ */
 #include "clock.h"
 #include "elasticity.h"
 
@@ -91,10 +94,11 @@ static elasticity *make(ilsa_product method) {
 }
 
 /* Milliseconds of a product by a method, and of making ready for the box. */
-static double time_method(ilsa_product method, subject s, int bx, int by, double *ready) {
+static double time_box(ilsa_product method, subject s, int bx, int by, mirror_axis about_x,
+                       mirror_axis about_y, double *ready) {
     s.e = make(method);
     double start = ilsai_clock();
-    if (ilsai_elasticity_set_box(s.e, bx, by, MIRROR_NONE, MIRROR_NONE)) {
+    if (ilsai_elasticity_set_box(s.e, bx, by, about_x, about_y)) {
         ilsai_elasticity_destroy(&s.e);
         return NAN;
     }
@@ -102,6 +106,19 @@ static double time_method(ilsa_product method, subject s, int bx, int by, double
     double seconds = time_of(&s);
     ilsai_elasticity_destroy(&s.e);
     return 1e3 * seconds;
+}
+
+static double time_method(ilsa_product method, subject s, int bx, int by, double *ready) {
+    return time_box(method, s, bx, by, MIRROR_NONE, MIRROR_NONE, ready);
+}
+
+/* The axis through cells or between them; the part of n that is to be solved for. */
+static mirror_axis axis_of(int n) {
+    return n % 2 ? MIRROR_CENTRE : MIRROR_EDGE;
+}
+
+static int part_of(int n) {
+    return (n + 1) / 2;
 }
 
 /* Milliseconds; the sums in p serve as the truth. */
@@ -129,6 +146,21 @@ static void print_cell(double value, const char *format) {
         printf(format, value);
 }
 
+/* Of the halves and a quarter; p is overwritten. */
+static void print_parts(subject s, int bx, int by) {
+    int hx = part_of(bx), hy = part_of(by);
+    mirror_axis x = axis_of(bx), y = axis_of(by);
+    double half_x = NAN, half_y = NAN, quarter = NAN, ready;
+    if (ilsai_elasticity_has_fft()) {
+        half_x = time_box(ILSA_PRODUCT_FFT, s, hx, by, x, MIRROR_NONE, &ready);
+        half_y = time_box(ILSA_PRODUCT_FFT, s, bx, hy, MIRROR_NONE, y, &ready);
+        quarter = time_box(ILSA_PRODUCT_FFT, s, hx, hy, x, y, &ready);
+    }
+    print_cell(half_x, "%11.4f");
+    print_cell(half_y, "%11.4f");
+    print_cell(quarter, "%11.4f");
+}
+
 static void print_row(int bx, int by) {
     int count = bx * by;
     double *w = alloc_doubles((size_t)count), *p = alloc_doubles((size_t)count);
@@ -147,6 +179,7 @@ static void print_row(int bx, int by) {
         error = largest_difference(p, truth, count);
     printf("%5d x %-5d%9d", bx, by, count);
     print_cell(fft, "%11.4f");
+    print_parts(s, bx, by);
     print_cell(blas, "%11.4f");
     print_cell(sum, "%11.3f");
     print_cell(error, "%11.1e");
@@ -165,8 +198,8 @@ int main(void) {
                                  {49, 49},   {65, 65},   {97, 97},   {1000, 1000}};
     printf(
         "milliseconds per product; off: FFT (BLAS where there is none) against the direct sum\n");
-    printf("%13s%9s%11s%11s%11s%11s%11s\n", "box", "cells", "FFT", "BLAS", "direct", "off",
-           "new box");
+    printf("%13s%9s%11s%11s%11s%11s%11s%11s%11s%11s\n", "box", "cells", "FFT", "half, x", "half, y",
+           "quarter", "BLAS", "direct", "off", "new box");
     for (size_t b = 0; b < sizeof box / sizeof *box; b++)
         print_row(box[b][0], box[b][1]);
     return 0;
