@@ -26,7 +26,7 @@ struct fft {
     double *rows;       /* cy x 2 cx: the box, zeros behind it */
     fftw_complex *half; /* 2 cy x (cx + 1): rows transformed */
     fftw_complex *full; /* 2 cy x (cx + 1): rows and columns transformed */
-    double *spectrum;   /* by 1 / (4 cx cy): (cy + 1) x `terms` x (cx + 1), see below */
+    double *spectrum;   /* by 1 / (4 cx cy), part by part: (cy + 1) x `terms` x columns */
     int terms;
     batch rows_there, columns_there, columns_back, rows_back;
 };
@@ -128,6 +128,11 @@ static int plan(fft *f) {
 /* Parts of a batch. */
 static int parts_of(int count) {
     return (count + FFT_PART - 1) / FFT_PART;
+}
+
+static size_t end_of_part(int part, int count) {
+    int end = (part + 1) * FFT_PART;
+    return (size_t)(end < count ? end : count);
 }
 
 /* The plan of a part, which starts at *first. */
@@ -237,33 +242,40 @@ static void add_to_matrix(double *m, size_t step, int one_sided_x, int one_sided
     }
 }
 
-static void add_spectrum(fft *f, const double *kernel, int one_sided_x, int one_sided_y) {
-    size_t cx = (size_t)f->cx, cy = (size_t)f->cy, h = half_length(f);
+/* Where row l of the spectrum of the part of columns that starts at first begins. */
+static double *spectrum_row(const fft *f, size_t first, size_t columns, size_t l) {
+    return f->spectrum + (size_t)f->terms * (first * ((size_t)f->cy + 1) + l * columns);
+}
+
+static void add_spectrum_row(fft *f, int one_sided_x, int one_sided_y, size_t l) {
+    size_t h = half_length(f), mirrored = l ? 2 * (size_t)f->cy - l : 0;
     double scale = 1 / (4 * (double)f->cx * (double)f->cy);
-    transform_kernel(f, kernel, one_sided_x, one_sided_y);
-    for (size_t l = 0; l <= cy; l++)
-        for (size_t k = 0; k <= cx; k++) {
-            double *up = f->full[l * h + k], *low = f->full[(l ? 2 * cy - l : 0) * h + k];
-            double upper[2] = {scale * up[0], scale * up[1]};
-            double lower[2] = {scale * low[0], scale * low[1]};
-            double *m = f->spectrum + l * (size_t)f->terms * h + k;
-            if (f->terms == TERMS_QUARTER) {
-                add_to_matrix(m, h, one_sided_x, one_sided_y, upper, lower);
-            } else if (one_sided_x || one_sided_y) {
-                m[IMAGE_R * h] = upper[0];
-                m[IMAGE_I * h] = upper[1];
-            } else {
-                m[0] = upper[0];
-            }
+    for (size_t k = 0; k < h; k++) {
+        size_t first = k - k % FFT_PART, end = end_of_part((int)(k / FFT_PART), f->cx + 1);
+        double *m = spectrum_row(f, first, end - first, l) + (k - first);
+        double *up = f->full[l * h + k], *low = f->full[mirrored * h + k];
+        double upper[2] = {scale * up[0], scale * up[1]};
+        double lower[2] = {scale * low[0], scale * low[1]};
+        if (f->terms == TERMS_QUARTER) {
+            add_to_matrix(m, end - first, one_sided_x, one_sided_y, upper, lower);
+        } else if (one_sided_x || one_sided_y) {
+            m[IMAGE_R * (end - first)] = upper[0];
+            m[IMAGE_I * (end - first)] = upper[1];
+        } else {
+            m[0] = upper[0];
         }
+    }
 }
 
 static void make_spectrum(fft *f, const double *kernel) {
     size_t count = ((size_t)f->cy + 1) * (size_t)f->terms * half_length(f);
     memset(f->spectrum, 0, count * sizeof *f->spectrum);
     for (int y = 0; y <= (f->about_y != MIRROR_NONE); y++)
-        for (int x = 0; x <= (f->about_x != MIRROR_NONE); x++)
-            add_spectrum(f, kernel, x, y);
+        for (int x = 0; x <= (f->about_x != MIRROR_NONE); x++) {
+            transform_kernel(f, kernel, x, y);
+            for (size_t l = 0; l <= (size_t)f->cy; l++)
+                add_spectrum_row(f, x, y, l);
+        }
 }
 
 fft *ilsai_fft_create(int cx, int cy, mirror_axis about_x, mirror_axis about_y,
@@ -329,11 +341,6 @@ static void lay_out_rows(const product *c, size_t first, size_t end) {
     }
 }
 
-static size_t end_of_part(int part, int count) {
-    int end = (part + 1) * FFT_PART;
-    return (size_t)(end < count ? end : count);
-}
-
 static void transform_rows(void *context, int first, int end) {
     const product *c = context;
     for (int part = first; part < end; part++) {
@@ -342,27 +349,25 @@ static void transform_rows(void *context, int first, int end) {
     }
 }
 
-/* Coefficients first .. end - 1 of two rows, which are the same one if it is its own image. */
-typedef void multiply_rows(const double *m, size_t step, fftw_complex *upper, fftw_complex *lower,
-                           size_t first, size_t end);
+/* `count` coefficients of two rows, which are the same one if it is its own image. */
+typedef void multiply_rows(const double *m, size_t count, fftw_complex *upper, fftw_complex *lower);
 
-static void multiply_plain(const double *m, size_t step, fftw_complex *upper, fftw_complex *lower,
-                           size_t first, size_t end) {
-    (void)step;
-    for (size_t i = first; i < end; i++) {
+static void multiply_plain(const double *m, size_t count, fftw_complex *upper,
+                           fftw_complex *lower) {
+    for (size_t i = 0; i < count; i++) {
         upper[i][0] *= m[i];
         upper[i][1] *= m[i];
     }
-    for (size_t i = first; i < end && lower != upper; i++) {
+    for (size_t i = 0; i < count && lower != upper; i++) {
         lower[i][0] *= m[i];
         lower[i][1] *= m[i];
     }
 }
 
-static void multiply_mirrored_x(const double *m, size_t step, fftw_complex *upper,
-                                fftw_complex *lower, size_t first, size_t end) {
-    const double *re = m + IMAGE_R * step, *im = m + IMAGE_I * step;
-    for (size_t i = first; i < end; i++) {
+static void multiply_mirrored_x(const double *m, size_t count, fftw_complex *upper,
+                                fftw_complex *lower) {
+    const double *re = m + IMAGE_R * count, *im = m + IMAGE_I * count;
+    for (size_t i = 0; i < count; i++) {
         double ur = upper[i][0], ui = upper[i][1], lr = lower[i][0], li = lower[i][1];
         lower[i][0] = m[i] * lr + re[i] * ur + im[i] * ui;
         lower[i][1] = m[i] * li + im[i] * ur - re[i] * ui;
@@ -371,10 +376,10 @@ static void multiply_mirrored_x(const double *m, size_t step, fftw_complex *uppe
     }
 }
 
-static void multiply_mirrored_y(const double *m, size_t step, fftw_complex *upper,
-                                fftw_complex *lower, size_t first, size_t end) {
-    const double *re = m + IMAGE_R * step, *im = m + IMAGE_I * step;
-    for (size_t i = first; i < end; i++) {
+static void multiply_mirrored_y(const double *m, size_t count, fftw_complex *upper,
+                                fftw_complex *lower) {
+    const double *re = m + IMAGE_R * count, *im = m + IMAGE_I * count;
+    for (size_t i = 0; i < count; i++) {
         double ur = upper[i][0], ui = upper[i][1], lr = lower[i][0], li = lower[i][1];
         lower[i][0] = m[i] * lr + re[i] * ur + im[i] * ui;
         lower[i][1] = m[i] * li + re[i] * ui - im[i] * ur;
@@ -383,19 +388,19 @@ static void multiply_mirrored_y(const double *m, size_t step, fftw_complex *uppe
     }
 }
 
-static void multiply_quarter(const double *m, size_t step, fftw_complex *upper, fftw_complex *lower,
-                             size_t first, size_t end) {
-    for (size_t i = first; i < end; i++) {
+static void multiply_quarter(const double *m, size_t count, fftw_complex *upper,
+                             fftw_complex *lower) {
+    for (size_t i = 0; i < count; i++) {
         const double *a = m + i;
         double ur = upper[i][0], ui = upper[i][1], lr = lower[i][0], li = lower[i][1];
-        lower[i][0] = a[UPPER_LOWER_RR * step] * ur + a[UPPER_LOWER_IR * step] * ui +
-                      a[LOWER_RR * step] * lr + a[LOWER_RI * step] * li;
-        lower[i][1] = a[UPPER_LOWER_RI * step] * ur + a[UPPER_LOWER_II * step] * ui +
-                      a[LOWER_RI * step] * lr + a[LOWER_II * step] * li;
-        upper[i][0] = a[UPPER_RR * step] * ur + a[UPPER_RI * step] * ui +
-                      a[UPPER_LOWER_RR * step] * lr + a[UPPER_LOWER_RI * step] * li;
-        upper[i][1] = a[UPPER_RI * step] * ur + a[UPPER_II * step] * ui +
-                      a[UPPER_LOWER_IR * step] * lr + a[UPPER_LOWER_II * step] * li;
+        lower[i][0] = a[UPPER_LOWER_RR * count] * ur + a[UPPER_LOWER_IR * count] * ui +
+                      a[LOWER_RR * count] * lr + a[LOWER_RI * count] * li;
+        lower[i][1] = a[UPPER_LOWER_RI * count] * ur + a[UPPER_LOWER_II * count] * ui +
+                      a[LOWER_RI * count] * lr + a[LOWER_II * count] * li;
+        upper[i][0] = a[UPPER_RR * count] * ur + a[UPPER_RI * count] * ui +
+                      a[UPPER_LOWER_RR * count] * lr + a[UPPER_LOWER_RI * count] * li;
+        upper[i][1] = a[UPPER_RI * count] * ur + a[UPPER_II * count] * ui +
+                      a[UPPER_LOWER_IR * count] * lr + a[UPPER_LOWER_II * count] * li;
     }
 }
 
@@ -408,11 +413,11 @@ static multiply_rows *multiplication(const fft *f) {
 
 /* Columns first .. end - 1. */
 static void multiply_by_spectrum(fft *f, size_t first, size_t end) {
-    size_t cy = (size_t)f->cy, h = half_length(f);
+    size_t cy = (size_t)f->cy, h = half_length(f), columns = end - first;
     multiply_rows *multiply = multiplication(f);
     for (size_t l = 0; l <= cy; l++)
-        multiply(f->spectrum + l * (size_t)f->terms * h, h, f->full + l * h,
-                 f->full + (l ? 2 * cy - l : 0) * h, first, end);
+        multiply(spectrum_row(f, first, columns, l), columns, f->full + l * h + first,
+                 f->full + (l ? 2 * cy - l : 0) * h + first);
 }
 
 /* Zeros into the lower half of columns first .. end - 1. */
