@@ -100,14 +100,6 @@ ilsa_status ilsai_rim_begin(ilsa_solver *s, double dt) {
     return status;
 }
 
-static void set_width(ilsa_solver *s, int cell, double width) {
-    int image[4];
-    int count = ilsai_grid_images(&s->g, cell % s->g.nx, cell / s->g.nx, image);
-    for (int k = 0; k < count; k++) {
-        s->trial.width[image[k]] = width;
-    }
-}
-
 /* Injection alone: what the source terms of a cell are before any leak-off of this pass. */
 static void set_leak(ilsa_solver *s, int cell, double leak) {
     s->gain[cell] += s->leak[cell] - leak;
@@ -129,7 +121,7 @@ static ilsa_status drop_unreached(ilsa_solver *s) {
                                   "tip cell (%d, %d) is out of the front's reach", i, j);
             }
             s->trial.kind[cell] = ILSA_CELL_EMPTY;
-            set_width(s, cell, 0);
+            s->trial.width[cell] = 0;
             set_leak(s, cell, 0);
         }
     }
@@ -245,14 +237,14 @@ static void set_cell(ilsa_solver *s, const front_cell *c, double dt, int hold, i
     s->trial.kind[c->cell] = kind;
     s->trial.speed[c->cell] = c->V;
     if (kind == ILSA_CELL_EMPTY) {
-        set_width(s, c->cell, 0);
+        s->trial.width[c->cell] = 0;
         set_leak(s, c->cell, 0);
         return;
     }
     if (kind == ILSA_CELL_TIP || was != ILSA_CELL_CHANNEL) {
         rim_width w = mean_width(s, c, dt);
         double most = is_cut_off(s, c) ? s->field.width[c->cell] : w.value;
-        set_width(s, c->cell, fmin(w.value, most));
+        s->trial.width[c->cell] = fmin(w.value, most);
         s->by_advance[k] = w.by_advance;
     }
     if (ilsai_has_leakoff(s)) {
