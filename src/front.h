@@ -24,6 +24,7 @@ typedef struct front_seed {
     double w;                   /* width that s and V answer to */
     double ds_dw;               /* derivative of s by the width of the cell */
     double ds_inner;            /* and by that of the inner cell */
+    double slope;               /* of (4.9) with the second term at s, as last seen: next to s */
     int inner;    /* cell behind it that tells how the width departs from the asymptote, -1: none */
     double depth; /* how much deeper that lies */
     int jumps;    /* of the stress on the normal around the cell */

@@ -195,7 +195,7 @@ static void leak_at_front(ilsa_solver *s, const front_cell *c, double dt, tip_re
  */
 static tipcell_growth jump_width(const ilsa_solver *s, const front_cell *c,
                                  const tipcell_front *at) {
-    tipcell_growth sum = {0, 0};
+    tipcell_growth sum = {0, 0, 0};
     for (int p = 0; p < c->from.count; p++) {
         const front_seed *seed = &s->seeds[c->from.seed[p]];
         for (int k = 0; k < seed->jumps; k++) {
@@ -222,8 +222,8 @@ static rim_width mean_width(const ilsa_solver *s, const front_cell *c, double dt
     double area = s->g.dx * s->g.dy;
     tipcell_growth growth = ilsai_tipcell_growth(&s->asymptote, V, K_I, &at);
     rim_width w = {growth.volume / area, growth.by_ell / area};
-    if (V > 0 && c->ell > 0) {
-        w.by_advance += w.value * ilsai_tip_velocity_exponent(&s->asymptote, V, c->ell) / (V * dt);
+    if (V > 0) {
+        w.by_advance += growth.by_log_V / (area * V * dt);
     }
     tipcell_growth added = jump_width(s, c, &at);
     w.by_advance += added.by_ell;

@@ -74,7 +74,8 @@ static first_term split_width(const ilsa_solver *s, const front_seed *seed) {
 
 void ilsai_survey_settle(const ilsa_solver *s, front_seed *seed) {
     double at[] = {seed->s, seed->s + (seed->inner >= 0 ? seed->depth : 0)};
-    tip_point point[2] = {{sqrt(at[0]), 0, 0.5}, {sqrt(at[1]), 0, 0.5}}; /* at rest, but a factor */
+    tip_point point[2] = {{sqrt(at[0]), 0, 0.5, 0},
+                          {sqrt(at[1]), 0, 0.5, 0}}; /* at rest, but a factor */
     if (seed->V > 0) {
         ilsai_tip_row(&s->asymptote, seed->V, seed->inner >= 0 ? 2 : 1, at, point);
     }
@@ -98,7 +99,7 @@ static double distance_for(const ilsa_solver *s, front_seed *seed, double dt) {
 
 double ilsai_survey_distance(const ilsa_solver *s, front_seed *seed, double dt) {
     front_seed at = *seed;
-    double value = distance_for(s, &at, dt), slope = 0, limit = ILSAI_SURVEY_SLOPE;
+    double value = distance_for(s, &at, dt), slope = seed->slope, limit = ILSAI_SURVEY_SLOPE;
     double close = ILSAI_SURVEY_CLOSE * s->tolerance * at.h;
     for (int k = 0; k < ILSAI_SURVEY_SECANTS; k++) {
         double last = at.s, next = fmax(at.s0, last + (value - last) / (1 - slope));
@@ -112,6 +113,7 @@ double ilsai_survey_distance(const ilsa_solver *s, front_seed *seed, double dt) 
         slope = fmax(-limit, fmin(limit, (fresh - value) / (next - last)));
         value = fresh;
     }
+    seed->slope = fabs(slope) < limit ? slope : 0; /* one at the limit would lead astray */
     seed->ds_dw = at.ds_dw / (1 - slope);
     seed->ds_inner = at.ds_inner / (1 - slope);
     return at.s + (value - at.s) / (1 - slope);

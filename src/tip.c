@@ -32,6 +32,9 @@
 #define NEWTON_MOST 20
 #define ROUNDING    1e-14
 
+/* Part of the first distance of a row below which nothing depends on more than its power law. */
+#define ROW_NEAR 1e-3
+
 /* Where a root is looked for. */
 #define X_LEAST 1e-250
 #define X_MOST  1e250
@@ -55,7 +58,7 @@ typedef struct tip_factor {
     double value, dlog;
 } tip_factor;
 
-/* The value of an increasing function of ln x and its slope; d ln(s - s0) / d ln w for (4.9). */
+/* The value of an increasing function of ln x and its slope; d ln V / d ln w. */
 typedef struct tip_residual {
     double value, slope, v_by_w;
 } tip_residual;
@@ -220,8 +223,10 @@ static tip_residual width_residual(const void *problem, double e) {
     const width_problem *p = problem;
     const double w = p->w_k + e, K = p->w_k / w, kappa = e / w;
     const tip_g f = g_delta(K, kappa, p->a / w);
+    const double slope = f.by_kappa * K + kappa * (3.0 - f.by_C);
     return (tip_residual){.value = log(f.g * (w * w * w) / p->m3),
-                          .slope = f.by_kappa * K + kappa * (3.0 - f.by_C)};
+                          .slope = slope,
+                          .v_by_w = slope / (kappa * (1.0 + 0.5 * f.by_C))};
 }
 
 /*
@@ -324,39 +329,69 @@ void ilsai_tip_moments(const tip_law *law, double V, double s, double w, double 
     *M1 = 2.0 * w * s * s / (5.0 + delta[1]);
 }
 
+/* From ln(g_delta w^3) = ln(mu' V s^2 / E'), C_hat falling with the root of V. */
+static double velocity_exponent(double K, double C) {
+    if (!(K < 1.0))
+        return 0.0;
+    const tip_g f = g_delta(K, 1.0 - K, C);
+    return (1.0 + 0.5 * f.by_C) / (3.0 + f.by_kappa * K / (1.0 - K) - f.by_C);
+}
+
 /* A width with what (3.18) and the exponent need; next is d ln(w - w_k) / d ln s. */
-static tip_point point_at(const tip_law *law, double V, double s, double w, double *next) {
-    double K, C, delta[2];
-    scaled_variables(law, V, s, w, &K, &C);
+static tip_point point_at(double K, double C, double s, double w, double *next) {
+    double delta[2];
     delta_p(K, C, (double[]){0.0, MOMENT_P0}, delta);
     *next = K < 1.0 ? 0.5 + 0.5 * delta[0] / (1.0 - K) : 1.0;
-    return (tip_point){w, 2.0 * w * s / (3.0 + delta[1]), 0.5 * (1.0 + delta[0])};
+    return (tip_point){
+        .w = w, .M0 = 2.0 * w * s / (3.0 + delta[1]), .exponent = 0.5 * (1.0 + delta[0])};
 }
 
 static bool is_plain_row(const tip_law *law, double V, int count, const double *s) {
-    bool plain = is_plain_law(law) && law->mu_prime > 0.0 && is_plain(V);
+    bool plain = V > 0.0 && is_plain_law(law) && law->mu_prime > 0.0 && is_plain(V);
     for (int k = 0; k < count; k++)
         plain = plain && is_plain(s[k]);
     return plain;
 }
 
+/* One point of a row of any arguments. */
+static tip_point point_alone(const tip_law *law, double V, double s) {
+    const double w = ilsai_tip_width(law, V, s);
+    if (!(V > 0.0 && law->mu_prime > 0.0))
+        return (tip_point){w, 2.0 / 3.0 * w * s, 0.5, 0.0};
+    double K, C, next;
+    scaled_variables(law, V, s, w, &K, &C);
+    tip_point point = point_at(K, C, s, w, &next);
+    point.by_V = velocity_exponent(K, C);
+    return point;
+}
+
+/* The point before, taken on to the distance s, where the width is w. */
+static tip_point taken_on(const tip_point *before, double s_before, double s, double w) {
+    tip_point point = *before;
+    point.M0 *= w * s / (before->w * s_before);
+    point.w = w;
+    return point;
+}
+
 void ilsai_tip_row(const tip_law *law, double V, int count, const double *s, tip_point *point) {
+    const bool plain = is_plain_row(law, V, count, s);
     double exponent = 1.0, e = 0.0;
-    const bool plain = V > 0.0 && is_plain_row(law, V, count, s);
     for (int k = 0; k < count; k++) {
         if (!plain) {
-            const double w = ilsai_tip_width(law, V, s[k]);
-            point[k] = (tip_point){w, 2.0 / 3.0 * w * s[k], 0.5};
-            if (V > 0.0 && law->mu_prime > 0.0)
-                point[k] = point_at(law, V, s[k], w, &exponent);
+            point[k] = point_alone(law, V, s[k]);
             continue;
         }
         const width_problem p = plain_problem(law, V, s[k]);
+        e = k == 0 ? width_start(&p) : e * pow(s[k] / s[k - 1], exponent);
+        if (s[k] < ROW_NEAR * s[0]) {
+            point[k] = taken_on(&point[k - 1], s[k - 1], s[k], p.w_k + e);
+            continue;
+        }
         tip_residual last;
-        e = k == 0
-                ? solve(width_residual, &p, width_start(&p), LAST_STEP, &last)
-                : solve(width_residual, &p, e * pow(s[k] / s[k - 1], exponent), LAST_IN_ROW, &last);
-        point[k] = point_at(law, V, s[k], p.w_k + e, &exponent);
+        e = solve(width_residual, &p, e, k == 0 ? LAST_STEP : LAST_IN_ROW, &last);
+        const double w = p.w_k + e;
+        point[k] = point_at(p.w_k / w, p.a / w, s[k], w, &exponent);
+        point[k].by_V = 1.0 / last.v_by_w;
     }
 }
 
@@ -368,16 +403,6 @@ double ilsai_tip_exponent(const tip_law *law, double V, double s, double w) {
         delta_p(K, C, (double[]){0.0, 0.0}, delta);
     }
     return 0.5 * (1.0 + delta[0]);
-}
-
-/* From ln(g_delta w^3) = ln(mu' V s^2 / E'), C_hat falling with the root of V. */
-double ilsai_tip_velocity_exponent(const tip_law *law, double V, double s) {
-    double K, C;
-    scaled_variables(law, V, s, ilsai_tip_width(law, V, s), &K, &C);
-    if (!(K < 1.0))
-        return 0.0;
-    const tip_g f = g_delta(K, 1.0 - K, C);
-    return (1.0 + 0.5 * f.by_C) / (3.0 + f.by_kappa * K / (1.0 - K) - f.by_C);
 }
 
 /*

@@ -13,14 +13,17 @@ typedef ilsa_material_def tip_law;
 /* Width at distance s > 0 behind a front of velocity V >= 0, (3.15); V = 0: toughness width. */
 double ilsai_tip_width(const tip_law *law, double V, double s);
 
-/* The asymptote at a distance: width, M0 over [0, s], d ln w / d ln s (1/2 .. 2/3). */
+/*
+ * The asymptote at a distance: width, M0 over [0, s], d ln w / d ln s (1/2 .. 2/3), d ln w / d ln V
+ * (0 .. 1/3).
+ */
 typedef struct tip_point {
-    double w, M0, exponent;
+    double w, M0, exponent, by_V;
 } tip_point;
 
 /*
  * The same at count distances, best in falling order: each is begun from the last, and all but the
- * first are found to 1e-10.
+ * first are found to 1e-10; those below a thousandth of it follow by a power law, to 0.2.
  */
 void ilsai_tip_row(const tip_law *law, double V, int count, const double *s, tip_point *point);
 
@@ -29,9 +32,6 @@ void ilsai_tip_moments(const tip_law *law, double V, double s, double w, double 
 
 /* d ln w / d ln s at distance s for V >= 0, w the width there: 1/2 .. 2/3, (1 + Delta) / 2. */
 double ilsai_tip_exponent(const tip_law *law, double V, double s, double w);
-
-/* d ln w / d ln V at distance s for V > 0. */
-double ilsai_tip_velocity_exponent(const tip_law *law, double V, double s);
 
 /* The survey-cell inversion (4.9). */
 typedef struct tip_front {

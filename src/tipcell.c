@@ -84,8 +84,8 @@ static void row_of(const tip_law *law, double V, double K_I, const wet_nodes *n,
         return;
     }
     for (int k = 0; k < n->count; k++) {
-        point[k].w = K_I / law->E_prime * sqrt(n->xi[k]);
-        point[k].M0 = 2.0 / 3.0 * point[k].w * n->xi[k];
+        const double w = K_I / law->E_prime * sqrt(n->xi[k]);
+        point[k] = (tip_point){w, 2.0 / 3.0 * w * n->xi[k], 0.5, 0.0};
     }
 }
 
@@ -93,11 +93,12 @@ tipcell_growth ilsai_tipcell_growth(const tip_law *law, double V, double K_I,
                                     const tipcell_front *front) {
     const wet_nodes n = nodes_of(front);
     tip_point point[TIPCELL_NODES];
-    tipcell_growth sum = {0.0, 0.0};
+    tipcell_growth sum = {0.0, 0.0, 0.0};
     row_of(law, V, K_I, &n, point);
     for (int k = 0; k < n.count; k++) {
         sum.volume += n.weight[k] * point[k].M0;
         sum.by_ell += n.weight[k] * point[k].w;
+        sum.by_log_V += n.weight[k] * point[k].M0 * point[k].by_V;
     }
     return sum;
 }
@@ -108,7 +109,7 @@ double ilsai_tipcell_volume(const tip_law *law, double V, double K_I, const tipc
 
 tipcell_growth ilsai_tipcell_jump_growth(double d, const tipcell_front *front) {
     const wet_nodes n = nodes_of(front);
-    tipcell_growth sum = {0.0, 0.0};
+    tipcell_growth sum = {0.0, 0.0, 0.0};
     for (int k = 0; k < n.count; k++) {
         sum.volume += n.weight[k] * ilsai_jump_moment(n.xi[k], d);
         sum.by_ell += n.weight[k] * ilsai_jump_width(n.xi[k], d);

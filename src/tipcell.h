@@ -23,9 +23,12 @@ typedef struct tipcell_front {
  */
 double ilsai_tipcell_volume(const tip_law *law, double V, double K_I, const tipcell_front *front);
 
-/* The same with its derivative by ell at constant velocity. */
+/*
+ * The same with its derivatives by ell and by ln V, each with the other held; the second leaves out
+ * that of M0 / w, which is less than 0.03 of the volume.
+ */
 typedef struct tipcell_growth {
-    double volume, by_ell;
+    double volume, by_ell, by_log_V;
 } tipcell_growth;
 tipcell_growth ilsai_tipcell_growth(const tip_law *law, double V, double K_I,
                                     const tipcell_front *front);

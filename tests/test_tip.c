@@ -167,6 +167,44 @@ static void test_width_grows(void **state) {
     }
 }
 
+/* Every law, slow and fast; distances as a tip cell and as a survey cell have them. */
+static void rows_are_widths_alone(void **state) {
+    (void)state;
+    static const double part[2][5] = {{1.0, 0.37, 0.045, 4e-4, 4e-5}, {1.0, 2.8, 0.0, 0.0, 0.0}};
+    double near = 0.0, far = 0.0, by_V = 0.0, moment = 0.0;
+    for (int n = 0; n < 4000; n++) {
+        const tip_law law = random_law(4.0);
+        const double V = power_of_10(-6.0, 6.0), first = power_of_10(-4.0, 4.0), small = 1e-5;
+        const int count = n % 2 ? 2 : 5;
+        double s[5];
+        tip_point point[5];
+        for (int k = 0; k < count; k++)
+            s[k] = first * part[n % 2][k];
+        ilsai_tip_row(&law, V, count, s, point);
+        for (int k = 0; k < count; k++) {
+            const double w = ilsai_tip_width(&law, V, s[k]);
+            if (s[k] < 1e-3 * first) {
+                far = larger(far, relative(point[k].w, w));
+                continue;
+            }
+            double M0, M1;
+            const double faster = ilsai_tip_width(&law, V * (1.0 + small), s[k]);
+            const double slower = ilsai_tip_width(&law, V * (1.0 - small), s[k]);
+            ilsai_tip_moments(&law, V, s[k], w, &M0, &M1);
+            near = larger(near, relative(point[k].w, w));
+            moment = larger(moment, relative(point[k].M0, M0));
+            by_V = larger(by_V, fabs(point[k].by_V - log(faster / slower) / (2.0 * small)));
+        }
+    }
+    print_message(
+        "rows: width off by %.2g, M0 by %.2g, d ln w / d ln V by %.2g; by power law %.2g\n", near,
+        moment, by_V, far);
+    assert_below(near, 1e-10);
+    assert_below(moment, 1e-10);
+    assert_below(by_V, 1e-5);
+    assert_below(far, 0.2);
+}
+
 static void test_width_at_rest(void **state) {
     (void)state;
     const tip_law law = {10.0, 1.0, 4.0, 2.0}, soft = {10.0, 1.0, 0.0, 2.0};
@@ -656,6 +694,7 @@ int main(void) {
         cmocka_unit_test(test_vertices),
         cmocka_unit_test(test_width_above_vertices),
         cmocka_unit_test(test_width_grows),
+        cmocka_unit_test(rows_are_widths_alone),
         cmocka_unit_test(test_width_at_rest),
         cmocka_unit_test(test_moments_are_integrals),
         cmocka_unit_test(test_g_delta_range),

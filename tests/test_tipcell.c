@@ -81,6 +81,37 @@ static void test_volume_table(void **state) {
     assert_below(formula, 1e-4);
 }
 
+/*
+ * Central differences of the volume over itself. Across the corners, where the chord's slope jumps,
+ * they are none of its derivative.
+ */
+static void volumes_grow_as_their_derivatives_say(void **state) {
+    (void)state;
+    static const tip_law laws[] = {{2, 1, 0, 0}, {2, 1, 3, 0}, {2, 1e-3, 3, 0}, {2, 1, 1, 5}};
+    const double V = 0.7, step = 0.01;
+    double by_ell = 0.0, by_V = 0.0;
+    for (int n = 0; n < 4; n++)
+        for (double alpha = 0.0; alpha < 1.6; alpha += 0.2)
+            for (double ell = 0.05; ell < 2.5; ell += 0.15) {
+                tipcell_front at = make_front(ell, alpha, 1.5, 0.8);
+                const tipcell_growth now = ilsai_tipcell_growth(&laws[n], V, 0, &at);
+                const double faster = ilsai_tipcell_volume(&laws[n], V * (1 + step), 0, &at);
+                const double slower = ilsai_tipcell_volume(&laws[n], V * (1 - step), 0, &at);
+                at.ell = ell * (1 + step);
+                const double more = ilsai_tipcell_volume(&laws[n], V, 0, &at);
+                at.ell = ell * (1 - step);
+                const double less = ilsai_tipcell_volume(&laws[n], V, 0, &at);
+                const double unit = 2 * step * now.volume;
+                by_V = larger(by_V, fabs((faster - slower) / unit - now.by_log_V / now.volume));
+                if (fabs(ell - fmax(1.5 * at.cos_a, 0.8 * at.sin_a)) > 2 * step * ell)
+                    by_ell =
+                        larger(by_ell, fabs((more - less) / unit - ell * now.by_ell / now.volume));
+            }
+    print_message("volume: d ln / d ln ell off by %.2g, d ln / d ln V by %.2g\n", by_ell, by_V);
+    assert_below(by_ell, 0.01);
+    assert_below(by_V, 0.03);
+}
+
 /* w = K_I s^(1/2) / E' has elementary integrals: the triangles of (4.15), far corner included. */
 static double triangle(double ell) {
     return ell > 0.0 ? 4.0 / 15.0 * pow(ell, 2.5) : 0.0;
@@ -474,6 +505,7 @@ static void full_cells_without_spread(void **unused) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_volume_table),
+        cmocka_unit_test(volumes_grow_as_their_derivatives_say),
         cmocka_unit_test(test_volume_at_rest),
         cmocka_unit_test(test_continuous_in_alpha),
         cmocka_unit_test(test_continuous_in_ell),
