@@ -47,8 +47,17 @@ static long place(const basis *b, int i) {
     return b->about == MIRROR_NONE ? 2L * i - b->c + 1 : 2L * i + (b->about == MIRROR_EDGE);
 }
 
+/* Where block n begins: its waves, its parts, its matrix. */
+static size_t first_wave(const basis *b, int n) {
+    return (size_t)n * (size_t)b->waves;
+}
+
+static size_t first_part(const basis *b, int n) {
+    return (size_t)n * (size_t)b->parts;
+}
+
 static double *block(const basis *b, int n) {
-    return b->matrix + (size_t)n * (size_t)b->waves * (size_t)b->parts;
+    return b->matrix + first_wave(b, n) * (size_t)b->parts;
 }
 
 static int basis_create(basis *b, int c, mirror_axis about) {
@@ -212,26 +221,27 @@ static void unfold_rows(const basis *b, const double *part, size_t length, doubl
 
 static void to_waves(dft *d) {
     const basis *x = &d->x, *y = &d->y;
-    int mx = 2 * x->c;
+    int step = 2 * x->c;
     for (int n = 0; n < x->blocks; n++)
-        multiply(CblasNoTrans, CblasTrans, y->c, x->waves, x->parts, d->folded + n * x->parts, x->c,
-                 block(x, n), x->parts, d->half_way + n * x->waves, mx);
+        multiply(CblasNoTrans, CblasTrans, y->c, x->waves, x->parts, d->folded + first_part(x, n),
+                 x->c, block(x, n), x->parts, d->half_way + first_wave(x, n), step);
     for (int n = 0; n < y->blocks; n++)
-        multiply(CblasNoTrans, CblasNoTrans, y->waves, mx, y->parts, block(y, n), y->parts,
-                 d->half_way + (size_t)(n * y->parts) * (size_t)mx, mx,
-                 d->waves + (size_t)(n * y->waves) * (size_t)mx, mx);
+        multiply(CblasNoTrans, CblasNoTrans, y->waves, step, y->parts, block(y, n), y->parts,
+                 d->half_way + first_part(y, n) * (size_t)step, step,
+                 d->waves + first_wave(y, n) * (size_t)step, step);
 }
 
 static void from_waves(dft *d) {
     const basis *x = &d->x, *y = &d->y;
-    int mx = 2 * x->c;
+    int step = 2 * x->c;
     for (int n = 0; n < y->blocks; n++)
-        multiply(CblasTrans, CblasNoTrans, y->parts, mx, y->waves, block(y, n), y->parts,
-                 d->waves + (size_t)(n * y->waves) * (size_t)mx, mx,
-                 d->half_way + (size_t)(n * y->parts) * (size_t)mx, mx);
+        multiply(CblasTrans, CblasNoTrans, y->parts, step, y->waves, block(y, n), y->parts,
+                 d->waves + first_wave(y, n) * (size_t)step, step,
+                 d->half_way + first_part(y, n) * (size_t)step, step);
     for (int n = 0; n < x->blocks; n++)
-        multiply(CblasNoTrans, CblasNoTrans, y->c, x->parts, x->waves, d->half_way + n * x->waves,
-                 mx, block(x, n), x->parts, d->folded + n * x->parts, x->c);
+        multiply(CblasNoTrans, CblasNoTrans, y->c, x->parts, x->waves,
+                 d->half_way + first_wave(x, n), step, block(x, n), x->parts,
+                 d->folded + first_part(x, n), x->c);
 }
 
 /* All kinds of waves share one spectrum: sines stand one wave number further on. */

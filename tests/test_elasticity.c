@@ -118,6 +118,11 @@ static double *product(elasticity *e, int bx, int by, const double *w, size_t st
     return p;
 }
 
+static mirror_axis axis(int n) {
+    static const mirror_axis kinds[] = {MIRROR_NONE, MIRROR_CENTRE, MIRROR_EDGE};
+    return kinds[n % 3];
+}
+
 /* A box of cells, what it is one side of, and the cells' size. */
 typedef struct cells {
     int bx, by;
@@ -201,7 +206,7 @@ static void mirrored_products_count_the_images(void **state) {
         for (int kind = 1; kind < 9; kind++) {
             double worst = 0;
             for (size_t b = 0; b < sizeof box / sizeof *box; b++) {
-                cells at = {box[b][0], box[b][1], kind % 3, kind / 3, 1, b % 3 ? 1 : 0.4};
+                cells at = {box[b][0], box[b][1], axis(kind), axis(kind / 3), 1, b % 3 ? 1 : 0.4};
                 size_t stride = (size_t)at.bx + 3 * (b % 2);
                 worst = fmax(worst, against_direct_sum(&at, stride, method[m]));
             }
@@ -233,7 +238,7 @@ static void mirrored_product_is_that_of_the_whole(void **state) {
     ilsa_product method[2];
     for (size_t m = methods(method); m-- > 0;)
         for (int kind = 1; kind < 9; kind++) {
-            cells at = {bx, by, kind % 3, kind / 3, 1, 1};
+            cells at = {bx, by, axis(kind), axis(kind / 3), 1, 1};
             int nx = at.about_x ? 2 * bx - (at.about_x == MIRROR_CENTRE) : bx;
             int ny = at.about_y ? 2 * by - (at.about_y == MIRROR_CENTRE) : by;
             elasticity *e = make(1, 1, 1, method[m]);
@@ -365,7 +370,8 @@ static void product_has_no_memory(void **state) {
             size_t stride = (size_t)other[b][0];
             double *v = random_field(stride * (size_t)other[b][1], 12);
             double *q = product(e, other[b][0], other[b][1], v, stride);
-            assert_int_equal(ilsai_elasticity_set_box(e, bx, by, b % 3, (b + 1) % 3), ILSA_OK);
+            assert_int_equal(ilsai_elasticity_set_box(e, bx, by, axis((int)b), axis((int)b + 1)),
+                             ILSA_OK);
             double *again = product(e, bx, by, w, bx);
             assert_memory_equal(p, again, count * sizeof *p);
             free(v);
