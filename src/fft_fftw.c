@@ -18,9 +18,11 @@ typedef struct batch {
  * The 2-D transform is done as rows, then columns, because only the upper cy of the 2 cy padded
  * rows ever hold the box: the others need no row transform, either way (measured: a quarter less
  * time than FFTW's 2-D plans). Columns go from one array to another, which FFTW does faster than
- * in place.
+ * in place. They are twice the work of rows, and cost more the longer they are: a box that is
+ * higher than wide is turned (up to half of the time).
  */
 struct fft {
+    int turned; /* x and y below are y and x of the caller */
     int cx, cy;
     mirror_axis about_x, about_y;
     double *rows;       /* cy x 2 cx: the box, zeros behind it */
@@ -165,18 +167,33 @@ static void columns_back(fft *f, int part) {
     fftw_execute_dft(p, f->full + first, f->half + first);
 }
 
+/* Numbers of an array of the caller's, by column i and row j of the transform: at i * x + j * y. */
+typedef struct steps {
+    size_t x, y;
+} steps;
+
+static steps steps_of(const fft *f, size_t stride) {
+    return f->turned ? (steps){stride, 1} : (steps){1, stride};
+}
+
+static void gather(double *row, const double *from, size_t step, size_t count) {
+    for (size_t i = 0; i < count; i++)
+        row[i] = from[i * step];
+}
+
 /*
- * Row j < cy of the kernel, or of its one-sided part, into row `to`, in wrapped order. Offset cx
- * does not occur in a box, nor 2 cx - 1 between a cell and an image: they count as zero.
+ * A row of the kernel, or of its one-sided part, in wrapped order. Offset cx does not occur in a
+ * box, nor 2 cx - 1 between a cell and an image: they count as zero.
  */
-static void lay_out_kernel_row(const fft *f, const double *kernel, int one_sided, double *row) {
+static void lay_out_kernel_row(const fft *f, const double *kernel, size_t step, int one_sided,
+                               double *row) {
     size_t cx = (size_t)f->cx, mx = row_length(f);
     if (one_sided) {
-        memcpy(row, kernel + (f->about_x == MIRROR_EDGE), (mx - 1) * sizeof *row);
+        gather(row, kernel + (f->about_x == MIRROR_EDGE) * step, step, mx - 1);
         row[mx - 1] = 0;
         return;
     }
-    memcpy(row, kernel, cx * sizeof *row);
+    gather(row, kernel, step, cx);
     row[cx] = 0;
     for (size_t i = 1; i < cx; i++)
         row[mx - i] = row[i];
@@ -185,12 +202,13 @@ static void lay_out_kernel_row(const fft *f, const double *kernel, int one_sided
 /* Transforms cy rows of the kernel, row `first` and those that follow, into the upper half. */
 static void transform_kernel_rows(fft *f, const double *kernel, size_t first, int one_sided) {
     size_t cy = (size_t)f->cy, mx = row_length(f);
-    size_t step = (size_t)ilsai_mirror_offsets(f->about_x, f->cx);
+    size_t columns = (size_t)ilsai_mirror_offsets(f->about_x, f->cx);
     size_t end = (size_t)ilsai_mirror_offsets(f->about_y, f->cy);
+    steps at = steps_of(f, f->turned ? end : columns);
     for (size_t j = 0; j < cy; j++) {
         double *row = f->rows + j * mx;
         if (first + j < end)
-            lay_out_kernel_row(f, kernel + (first + j) * step, one_sided, row);
+            lay_out_kernel_row(f, kernel + (first + j) * at.y, at.x, one_sided, row);
         else
             memset(row, 0, mx * sizeof *row);
     }
@@ -283,7 +301,10 @@ fft *ilsai_fft_create(int cx, int cy, mirror_axis about_x, mirror_axis about_y,
     fft *f = calloc(1, sizeof *f);
     if (!f)
         return NULL;
-    *f = (fft){.cx = cx, .cy = cy, .about_x = about_x, .about_y = about_y};
+    if (cy > cx)
+        *f = (fft){.turned = 1, .cx = cy, .cy = cx, .about_x = about_y, .about_y = about_x};
+    else
+        *f = (fft){.cx = cx, .cy = cy, .about_x = about_x, .about_y = about_y};
     f->terms = terms_of(about_x, about_y);
     if (!allocate(f) || !plan(f)) {
         ilsai_fft_destroy(&f);
@@ -318,7 +339,8 @@ void ilsai_fft_destroy(fft **f) {
 /* A product at work. */
 typedef struct product {
     fft *f;
-    size_t bx, by, stride;
+    size_t bx, by;
+    steps at;
     const double *w;
     double *p;
 } product;
@@ -332,7 +354,7 @@ static void lay_out_rows(const product *c, size_t first, size_t end) {
     for (size_t j = first; j < end; j++) {
         double *row = c->f->rows + j * mx;
         size_t filled = j < c->by ? c->bx : 0;
-        memcpy(row, c->w + j * c->stride, filled * sizeof *row);
+        gather(row, c->w + j * c->at.y, c->at.x, filled);
         memset(row + filled, 0, (mx - filled) * sizeof *row);
         if (c->f->about_x == MIRROR_CENTRE)
             row[0] *= 0.5;
@@ -438,21 +460,27 @@ static void convolve_columns(void *context, int first, int end) {
     }
 }
 
+static void scatter(double *to, size_t step, const double *row, size_t count) {
+    for (size_t i = 0; i < count; i++)
+        to[i * step] = row[i];
+}
+
 static void transform_back(void *context, int first, int end) {
     const product *c = context;
     for (int part = first; part < end; part++) {
         rows_back(c->f, part);
         size_t last = end_of_part(part, (int)c->by);
         for (size_t j = (size_t)part * FFT_PART; j < last; j++)
-            memcpy(c->p + j * c->stride, c->f->rows + j * row_length(c->f), c->bx * sizeof *c->p);
+            scatter(c->p + j * c->at.y, c->at.x, c->f->rows + j * row_length(c->f), c->bx);
     }
 }
 
 void ilsai_fft_convolve(fft *f, team *threads, int bx, int by, const double *w, double *p,
                         size_t stride) {
-    product c = {f, (size_t)bx, (size_t)by, stride, w, p};
+    int columns = f->turned ? by : bx, rows = f->turned ? bx : by;
+    product c = {f, (size_t)columns, (size_t)rows, steps_of(f, stride), w, p};
     int least = 1 + FFT_LEAST / (FFT_PART * f->cx);
     ilsai_team_run(threads, transform_rows, &c, parts_of(f->cy), least);
     ilsai_team_run(threads, convolve_columns, &c, parts_of(f->cx + 1), least);
-    ilsai_team_run(threads, transform_back, &c, parts_of(by), least);
+    ilsai_team_run(threads, transform_back, &c, parts_of(rows), least);
 }
