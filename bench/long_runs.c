@@ -124,7 +124,7 @@ int main(int argc, char **argv) {
            "law", "steps", "refused", "coarsened", "growth", "off, %", "imbalance");
     failed |= run_growth("viscosity", 0, 1, 0);
     failed |= run_growth("toughness", 0, 1e-4, 1);
-    failed |= run_growth("all three", 1e-4, 1, 1);
-    failed |= run_growth("leak-off", 1, 1, 1);
+    failed |= run_growth("all three", 1e-12, 1, 1);
+    failed |= run_growth("leak-off", 1e-10, 1, 1);
     return failed;
 }
