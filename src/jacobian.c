@@ -106,8 +106,7 @@ static void set_widths(void *context, int first, int end) {
     const loop *l = context;
     const jacobian *m = l->m;
     for (int k = first; k < end; k++) {
-        m->width[m->a->cell[k]] =
-            is_free(m, k) ? l->x[k] : ilsai_jacobian_tip_width(m, k, l->x);
+        m->width[m->a->cell[k]] = is_free(m, k) ? l->x[k] : ilsai_jacobian_tip_width(m, k, l->x);
     }
 }
 
@@ -384,12 +383,20 @@ static void add_width(const jacobian *m, double *out, int k, double value) {
     }
 }
 
+/*
+ * Where a pressure is the unknown it is, in the full matrix, the pressure over this, a width like
+ * the others: pivots are chosen among the unknowns, and must not depend on units.
+ */
+static double pressure_unit(const jacobian *m) {
+    return ilsai_elasticity_entry(m->e, 0, 0);
+}
+
 /* What the pressure of active cell row is in terms of the unknowns: C with the tips' responses. */
 static void fill_influence_row(jacobian *m, int row, double *out) {
     const active *a = m->a;
     memset(out, 0, (size_t)a->count * sizeof *out);
     if (has_pressure(m, row)) {
-        out[row] = 1;
+        out[row] = pressure_unit(m);
         return;
     }
     for (int k = 0; k < a->count; k++) {
@@ -438,7 +445,8 @@ static void fill_full_row(jacobian *m, int row) {
     const tip_response *r = response_of(m, row);
     add_response(m, out, r, r ? r->gain : NULL, -1);
     if (!is_free(m, row)) {
-        out[row] += ilsai_jacobian_without_width(m, row);
+        double unit = has_pressure(m, row) ? pressure_unit(m) : 1;
+        out[row] += unit * ilsai_jacobian_without_width(m, row);
     }
 }
 
@@ -452,6 +460,9 @@ ilsa_status ilsai_jacobian_solve_full(jacobian *m, const double *b, double *x) {
     memcpy(x, b, (size_t)n * sizeof *x);
     if (info == 0) {
         LAPACKE_dgetrs_work(LAPACK_COL_MAJOR, 'T', n, 1, m->full, n, m->pivots, x, n);
+    }
+    for (int k = 0; k < n; k++) {
+        x[k] *= has_pressure(m, k) ? pressure_unit(m) : 1;
     }
     m->seconds_preconditioner += ilsai_clock() - start;
     return info == 0 ? ILSA_OK : ILSA_ERR_NUMERIC;
