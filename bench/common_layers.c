@@ -71,15 +71,25 @@ static int count_of(int at_21, int cells) {
     return count + (count - cells) % 2;
 }
 
-ilsa_solver *layer_start_as(const layer_scene *scene, int cells, const layer_how *how) {
-    const double dx = height / cells, interfaces[] = {-0.5 * height, 0.5 * height};
-    const ilsa_mesh_def grid = {count_of(scene->nx, cells), count_of(scene->ny, cells), dx, dx};
+ilsa_mesh_def layer_mesh(const layer_scene *scene, int cells) {
+    const double dx = height / cells;
+    return (ilsa_mesh_def){count_of(scene->nx, cells), count_of(scene->ny, cells), dx, dx};
+}
+
+ilsa_material_def layer_material(const layer_scene *scene) {
     const ilsa_rock rock = {9.5e9, 0.2, 0.1, 1e6, 0.5 * scene->C_prime};
+    ilsa_material_def scaled = ilsa_material_def_default();
+    (void)ilsa_material_def_from_rock(&rock, &scaled);
+    return scaled;
+}
+
+ilsa_solver *layer_start_as(const layer_scene *scene, int cells, const layer_how *how) {
+    const double interfaces[] = {-0.5 * height, 0.5 * height};
+    const ilsa_mesh_def grid = layer_mesh(scene, cells);
+    const ilsa_material_def scaled = layer_material(scene);
     const ilsa_stress_def zero = ilsa_stress_def_default();
-    ilsa_material_def scaled;
     parts p = {0};
-    ilsa_status status = ilsa_material_def_from_rock(&rock, &scaled);
-    status = status ? status : ilsa_mesh_create(&grid, &p.mesh);
+    ilsa_status status = ilsa_mesh_create(&grid, &p.mesh);
     status = status ? status : ilsa_material_create(&scaled, &p.material);
     status = status ? status : ilsa_stress_create(&zero, &p.stress);
     status = status ? status : ilsa_stress_set_layers(p.stress, 2, interfaces, scene->sigma);

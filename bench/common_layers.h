@@ -16,11 +16,14 @@ enum { LAYER_SYMMETRIC_PHI1 = 2, LAYER_DROP_PHI1 = 8, LAYER_SCENES = 9, LAYER_TI
 extern const layer_scene layer_scenes[LAYER_SCENES];
 extern const double layer_times[LAYER_TIMES];
 
-/*
- * A solver that is started, on cells of H / cells, in the same window as at H/21; counts even where
- * cells is even, so that the interfaces lie on cell edges. NULL and a message on stderr if it
- * fails.
- */
+/* Cells of H / cells in the same window as at H/21; counts even where cells is, so that the
+ * interfaces lie on cell edges. */
+ilsa_mesh_def layer_mesh(const layer_scene *scene, int cells);
+
+/* The rock and the fluid. */
+ilsa_material_def layer_material(const layer_scene *scene);
+
+/* A solver that is started on such cells. NULL and a message on stderr if it fails. */
 ilsa_solver *layer_start(const layer_scene *scene, int cells);
 
 /* The same from another penny, with another tip model. */

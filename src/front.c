@@ -6,6 +6,8 @@
 
 /* Components of a normal up to which the front runs along the axis: rounding must not decide. */
 #define FRONT_ALONG 1e-9
+/* And weights that differ by no more than so, in parts, are the same. */
+#define FRONT_ALIKE 1e-9
 
 /* A cell's value as seen by its neighbours while the march goes on. */
 typedef struct node {
@@ -204,6 +206,25 @@ static void bend(node *n, const node *a, const node *b, double dx, double dy) {
     }
 }
 
+/*
+ * Leaves out the least of count weights, and those that are as small but for rounding: a front that
+ * mirrors itself has such, and keeps its mirror. Returns how many are left.
+ */
+static int drop_least(int count, int *seed, double *weight) {
+    double least = INFINITY;
+    int kept = 0;
+    for (int k = 0; k < count; k++) {
+        least = fmin(least, weight[k]);
+    }
+    for (int k = 0; k < count; k++) {
+        if (weight[k] > (1 + FRONT_ALIKE) * least) {
+            seed[kept] = seed[k];
+            weight[kept++] = weight[k];
+        }
+    }
+    return kept > 0 ? kept : count - 1;
+}
+
 /* Joins the parents of b to those of a, with weights; the least are dropped when there are more. */
 static front_parents join(const front_parents *a, double weight_a, const front_parents *b,
                           double weight_b) {
@@ -223,13 +244,7 @@ static front_parents join(const front_parents *a, double weight_a, const front_p
         count += at == count;
     }
     while (count > FRONT_PARENTS) {
-        int least = 0;
-        for (int k = 1; k < count; k++) {
-            least = weight[k] < weight[least] ? k : least;
-        }
-        count--;
-        seed[least] = seed[count];
-        weight[least] = weight[count];
+        count = drop_least(count, seed, weight);
     }
     front_parents joined = {.count = count};
     for (int k = 0; k < count; k++) {
