@@ -288,16 +288,23 @@ static void set_cell_edges(void *context, int first, int end) {
     }
 }
 
-/* A tip cell without a pressure, as one wetted in this step, starts from a wet neighbour's. */
+/*
+ * A tip cell without a pressure, as one wetted in this step, starts from its wet neighbours' that
+ * are nearer to the channel, weighed as by the march: by the slope of the level over the distance.
+ */
 static void guess_pressure(ilsa_solver *s, const front_cell *c) {
-    if (s->trial.pressure[c->cell] != 0) {
-        return;
-    }
-    for (int face = 0; face < GRID_FACES; face++) {
+    double sum = 0, weights = 0;
+    for (int face = 0; face < GRID_FACES && s->trial.pressure[c->cell] == 0; face++) {
         int cell = ilsai_grid_neighbour(&s->g, c->cell % s->g.nx, c->cell / s->g.nx, face);
         if (cell >= 0 && s->trial.kind[cell] != ILSA_CELL_EMPTY && s->trial.pressure[cell] != 0) {
-            s->trial.pressure[c->cell] = s->trial.pressure[cell];
+            double d = face == GRID_LEFT || face == GRID_RIGHT ? s->g.dx : s->g.dy;
+            double weight = fmax(c->T - s->trial.level[cell], 0) / (d * d);
+            sum += weight * s->trial.pressure[cell];
+            weights += weight;
         }
+    }
+    if (weights > 0) {
+        s->trial.pressure[c->cell] = sum / weights;
     }
 }
 

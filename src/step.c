@@ -181,7 +181,8 @@ static coupled_problem pose(ilsa_solver *s, double dt, double change) {
                                .response = s->responses,
                                .response_count = s->response_count,
                                .threads = s->threads};
-    double aim = is_nested(s) ? s->tolerance : fmax(0.3 * change, tolerance_now(s, 0));
+    double share = fmin(ILSAI_PASS_SHARE, ILSAI_PASS_SHARP * s->tolerance);
+    double aim = is_nested(s) ? s->tolerance : fmax(share * change, tolerance_now(s, 0));
     problem.tolerance = ILSAI_WIDTH_TOLERANCE * fmin(aim, 0.1);
     return problem;
 }

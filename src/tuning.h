@@ -45,6 +45,11 @@
 /* Front: the most that the front's move takes away from a self term in Newton's matrix, as a part.
  */
 #define ILSAI_EDGE_GIVES 0.1
+/* Front: how sharply the widths of a pass are found, as a part of the front's last change; and,
+ * over the front's tolerance, where this is below those of the levels: a cell that may be tip or
+ * channel remains what the passes have made of it, which then must not depend on the solver. */
+#define ILSAI_PASS_SHARE 0.3
+#define ILSAI_PASS_SHARP 3e4
 /* Front: step of the differences that tell how a cell at the front answers, in cells. */
 #define ILSAI_DIFFERENCE 1e-5
 /* Front: passes before a step is given up, and the memory of the Anderson acceleration. */
