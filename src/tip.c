@@ -1,6 +1,7 @@
 #include "tip.h"
 
 #include <float.h>
+#include <limits.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -16,6 +17,7 @@
  */
 
 #define PI        3.141592653589793
+#define LN_2      0.69314718055994531
 #define BETA_M    3.1473451902649446 /* (3.3) */
 #define BETA_MT   2.5335594408265696
 #define BETA_M3   31.176914536239791  /* beta_m^3 */
@@ -35,9 +37,10 @@
 /* Part of the first distance of a row below which nothing depends on more than its power law. */
 #define ROW_NEAR 1e-3
 
-/* Where a root is looked for. */
-#define X_LEAST 1e-250
-#define X_MOST  1e250
+/* Where a root is looked for, and the largest step in ln x: x exp(STEP_MOST) is in range. */
+#define X_LEAST   1e-250
+#define X_MOST    1e250
+#define STEP_MOST 130.0
 
 /* G(K, B) and what its derivatives are made of. */
 typedef struct tip_bracket {
@@ -200,7 +203,7 @@ static double solve(tip_equation equation, const void *problem, double x, double
             high = x;
         else
             low = x;
-        x *= exp(step);
+        x *= exp(fmin(step, STEP_MOST));
         before = step;
         slope_before = last->slope;
         if (k >= NEWTON_MOST || !(x > low && x < high)) {
@@ -260,31 +263,80 @@ static inline bool is_plain_law(const tip_law *law) {
            (is_plain(law->C_prime) || law->C_prime == 0.0);
 }
 
-static double log_or_minus_infinity(double x) {
-    return x > 0.0 ? log(x) : -HUGE_VAL;
+/* Beyond it, a number >= 0 of any size, m 2^e: the bits are those of the same sums in range. */
+typedef struct wide {
+    double m; /* 0, or 1/2 <= m < 1 */
+    int e;
+} wide;
+
+static wide widen(double x) {
+    wide a;
+    a.m = frexp(x, &a.e);
+    return a;
 }
 
-/* Logarithms are limited to this before exp. */
-#define LOG_MOST 600.0
+static wide shifted(double x, int e) {
+    wide a = widen(x);
+    a.e += e;
+    return a;
+}
 
-/* Where C_hat is beyond e^230 only its product with s_hat matters. */
-#define LOG_C_MOST 230.0
+static wide times(wide a, wide b) {
+    return shifted(a.m * b.m, a.e + b.e);
+}
 
-/* The width for any arguments: logarithms, then units of the largest vertex width (3.3). */
-static double width_by_logarithms(const tip_law *law, double V, double s) {
-    const double log_s = log(s), log_E = log(law->E_prime);
-    const double w_k = log_or_minus_infinity(law->K_prime) + 0.5 * log_s - log_E;
+static wide over(wide a, wide b) {
+    return shifted(a.m / b.m, a.e - b.e);
+}
+
+static wide root_of(wide a) {
+    const int odd = a.e % 2 != 0;
+    return shifted(sqrt(odd ? 2.0 * a.m : a.m), (a.e - odd) / 2);
+}
+
+/* In units of 2^e. */
+static double narrow(wide a, int e) {
+    return ldexp(a.m, a.e - e);
+}
+
+/* Binary exponents are limited to this: beyond it a ratio is as good as infinite. */
+#define BITS_MOST 865
+
+static double limited(wide a) {
+    return ldexp(a.m, a.e < BITS_MOST ? a.e : BITS_MOST);
+}
+
+/* Where C_hat is beyond 2^332 only its product with s_hat matters: by how much it is. */
+#define BITS_C_MOST 332
+
+static int excess_of(wide C, int unit) {
+    const int excess = C.e - unit - BITS_C_MOST;
+    return C.m > 0.0 && excess > 0 ? excess : 0;
+}
+
+/* The larger of an exponent and that of a, which is raised to 1 / power; nothing where a is 0. */
+static int larger_exponent(int e, wide a, int power) {
+    const int other = a.e / power;
+    return a.m > 0.0 && other > e ? other : e;
+}
+
+/* The width for any arguments, in units near the largest vertex width (3.3). */
+static double width_beyond(const tip_law *law, double V, double s) {
+    const wide E = widen(law->E_prime), s_wide = widen(s), root = root_of(s_wide);
+    const wide w_k = times(over(widen(law->K_prime), E), root);
     if (V <= 0.0 || law->mu_prime == 0.0)
-        return exp(w_k);
-    double a = log(2.0) + log_or_minus_infinity(law->C_prime) + 0.5 * (log_s - log(V));
-    double m3 = log(law->mu_prime) + log(V) + 2.0 * log_s - log_E;
-    const double unit = fmax(w_k, fmax(m3 / 3.0, 0.25 * (m3 + a)));
-    const double excess = fmax(a - unit - LOG_C_MOST, 0.0);
-    a -= unit + excess;
-    m3 -= 3.0 * unit - excess;
-    if (m3 < -LOG_MOST)
-        return exp(w_k);
-    return exp(unit + log(width_solve(&(width_problem){exp(w_k - unit), exp(a), exp(m3)})));
+        return narrow(w_k, 0);
+    const wide V_wide = widen(V);
+    const wide a = over(times(shifted(law->C_prime, 1), root), root_of(V_wide));
+    const wide m3 = times(times(times(over(widen(law->mu_prime), E), V_wide), s_wide), s_wide);
+    int unit = larger_exponent(INT_MIN / 2, w_k, 1);
+    unit = larger_exponent(unit, m3, 3);
+    unit = larger_exponent(unit, times(m3, a), 4);
+    const int excess = excess_of(a, unit), unit3 = 3 * unit - excess;
+    if (m3.e - unit3 < -BITS_MOST)
+        return narrow(w_k, 0);
+    const width_problem p = {narrow(w_k, unit), narrow(a, unit + excess), narrow(m3, unit3)};
+    return ldexp(width_solve(&p), unit);
 }
 
 static width_problem plain_problem(const tip_law *law, double V, double s) {
@@ -295,14 +347,14 @@ static width_problem plain_problem(const tip_law *law, double V, double s) {
 
 double ilsai_tip_width(const tip_law *law, double V, double s) {
     if (!is_plain_law(law) || !is_plain(s) || !(is_plain(V) || V == 0.0))
-        return width_by_logarithms(law, V, s);
+        return width_beyond(law, V, s);
     if (V == 0.0 || law->mu_prime == 0.0)
         return law->K_prime / law->E_prime * sqrt(s);
     const width_problem p = plain_problem(law, V, s);
     return width_solve(&p);
 }
 
-/* K_hat and C_hat of (3.10) for V > 0. */
+/* K_hat and C_hat of (3.10) for V > 0; a width below the range counts as its smallest. */
 static void scaled_variables(const tip_law *law, double V, double s, double w, double *K,
                              double *C) {
     if (is_plain_law(law) && is_plain(V) && is_plain(s) && is_plain(w)) {
@@ -311,11 +363,9 @@ static void scaled_variables(const tip_law *law, double V, double s, double w, d
         *C = 2.0 * law->C_prime / sqrt(V) * root;
         return;
     }
-    const double log_root = 0.5 * log(s) - log(w);
-    const double log_K = log_or_minus_infinity(law->K_prime) - log(law->E_prime) + log_root;
-    const double log_C = log(2.0) + log_or_minus_infinity(law->C_prime) - 0.5 * log(V) + log_root;
-    *K = exp(fmin(log_K, LOG_MOST));
-    *C = exp(fmin(log_C, LOG_MOST));
+    const wide root = over(root_of(widen(s)), widen(fmax(w, DBL_MIN)));
+    *K = limited(times(over(widen(law->K_prime), widen(law->E_prime)), root));
+    *C = limited(times(over(shifted(law->C_prime, 1), root_of(widen(V))), root));
 }
 
 void ilsai_tip_moments(const tip_law *law, double V, double s, double w, double *M0, double *M1) {
@@ -325,8 +375,8 @@ void ilsai_tip_moments(const tip_law *law, double V, double s, double w, double 
         scaled_variables(law, V, s, w, &K, &C);
         delta_p(K, C, (double[]){MOMENT_P0, MOMENT_P1}, delta);
     }
-    *M0 = 2.0 * w * s / (3.0 + delta[0]);
-    *M1 = 2.0 * w * s * s / (5.0 + delta[1]);
+    *M0 = w / (1.5 + 0.5 * delta[0]) * s; /* nothing on the way is beyond range before them */
+    *M1 = w / (2.5 + 0.5 * delta[1]) * s * s;
 }
 
 /* From ln(g_delta w^3) = ln(mu' V s^2 / E'), C_hat falling with the root of V. */
@@ -430,6 +480,9 @@ static tip_residual distance_residual(const void *problem, double x) {
         .value = p->log_m0 + log_s, .slope = f * by_xi, .v_by_w = (3.0 + by_K - h.by_C) / by_xi};
 }
 
+/* Logarithms are limited to this before exp. */
+#define LOG_MOST 600.0
+
 /* The sum of the inverses of the vertex solutions of (4.9), each of its two limits in xi. */
 static double distance_start(const distance_problem *p) {
     const double m = fmin(p->log_m0 + log(BETA_M3), LOG_MOST);
@@ -442,15 +495,17 @@ static double distance_start(const distance_problem *p) {
 }
 
 /* K0, C0 and m0 for any arguments; false where K0 >= 1. */
-static bool distance_by_logarithms(distance_problem *p, const tip_law *law, double w, double s0,
-                                   double dt) {
-    const double log_w = log(w), log_s0 = log(s0), log_dt = log(dt), log_E = log(law->E_prime);
-    const double K0 = log_or_minus_infinity(law->K_prime) + 0.5 * log_s0 - log_E - log_w;
-    const double C0 = log(2.0) + log_or_minus_infinity(law->C_prime) + 0.5 * log_dt - log_w;
-    const double excess = fmax(C0 - LOG_C_MOST, 0.0);
-    p->K0 = exp(fmin(K0, 0.0));
-    p->C0 = exp(C0 - excess);
-    p->log_m0 = log(law->mu_prime) - log_E + 3.0 * (log_s0 - log_w) - log_dt + excess;
+static bool distance_beyond(distance_problem *p, const tip_law *law, double w, double s0,
+                            double dt) {
+    const wide w_wide = widen(w), r = over(widen(s0), w_wide), E = widen(law->E_prime);
+    const wide K0 = over(times(over(widen(law->K_prime), E), root_of(widen(s0))), w_wide);
+    const wide C0 = over(times(shifted(law->C_prime, 1), root_of(widen(dt))), w_wide);
+    const wide r3 = times(times(r, r), r);
+    const wide m0 = over(times(over(widen(law->mu_prime), E), r3), widen(dt));
+    const int excess = excess_of(C0, 0);
+    p->K0 = limited(K0);
+    p->C0 = narrow(C0, excess);
+    p->log_m0 = log(m0.m) + LN_2 * (m0.e + excess);
     return p->K0 < 1.0;
 }
 
@@ -470,11 +525,12 @@ static tip_front distance_of_toughness(const tip_law *law, double w, double s0, 
         const double root = law->E_prime * w / law->K_prime;
         s = root * root;
     } else {
-        s = exp(2.0 * (log(law->E_prime) + log(w) - log(law->K_prime)));
+        const wide root = over(times(widen(law->E_prime), widen(w)), widen(law->K_prime));
+        s = narrow(times(root, root), 0);
     }
     if (!(s > s0))
         return (tip_front){s0, 0.0, 0.0};
-    return (tip_front){s, (s - s0) / dt, 2.0 * s / w};
+    return (tip_front){s, (s - s0) / dt, limited(over(shifted(s, 1), widen(w)))};
 }
 
 /* From a distance that may be near the one sought, if it lies where one can be. */
@@ -492,7 +548,7 @@ tip_front ilsai_tip_distance_near(const tip_law *law, double w, double s0, doubl
     if (law->mu_prime == 0.0)
         return distance_of_toughness(law, w, s0, dt);
     const bool plain = is_plain_law(law) && is_plain(w) && is_plain(s0) && is_plain(dt);
-    if (!(plain ? distance_plain(&p, law, w, s0, dt) : distance_by_logarithms(&p, law, w, s0, dt)))
+    if (!(plain ? distance_plain(&p, law, w, s0, dt) : distance_beyond(&p, law, w, s0, dt)))
         return (tip_front){s0, 0.0, 0.0};
     p.gap = (1.0 - p.K0) * (1.0 + p.K0);
     p.xi_rate = p.K0 * p.K0 / p.gap;
@@ -503,8 +559,12 @@ tip_front ilsai_tip_distance_near(const tip_law *law, double w, double s0, doubl
         return (tip_front){s0, 0.0, 0.0};
     if (x >= X_MOST && p.xi_rate < 1e-200)
         return (tip_front){HUGE_VAL, HUGE_VAL, 0.0};
-    const double v = s0 / (1.0 / x + p.xi_rate);
-    return (tip_front){s0 + v, v / dt, last.v_by_w * v / w};
+    const double per_xi = 1.0 / x + p.xi_rate, v = s0 / per_xi;
+    if (plain)
+        return (tip_front){s0 + v, v / dt, last.v_by_w * v / w};
+    const wide far = over(widen(s0), widen(per_xi)); /* v, which may be too small */
+    return (tip_front){s0 + v, narrow(over(far, widen(dt)), 0),
+                       limited(times(widen(last.v_by_w), over(far, widen(w))))};
 }
 
 static bool is_positive(double x) {
@@ -582,6 +642,10 @@ ilsa_status ilsa_tip_distance(const ilsa_material_def *scaled, double w, double 
 }
 
 enum { VERTEX_K, VERTEX_MT, VERTEX_M, VERTICES };
+
+static double log_or_minus_infinity(double x) {
+    return x > 0.0 ? log(x) : -HUGE_VAL;
+}
 
 /* Logarithms of the vertex widths (3.3) over w. */
 static void vertex_ratios(const tip_law *law, double V, double s, double w,

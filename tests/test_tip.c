@@ -496,7 +496,7 @@ static void test_units(void **state) {
         worst = larger(worst, relative(M[3], M[1] * L * L * L));
     }
     print_message("other units, factors to 1e+-20: %.2g\n", worst);
-    assert_below(worst, 1e-10);
+    assert_below(worst, 1e-13);
 }
 
 /* The whole double range, subnormal numbers included: a status or a sane number, never a NaN. */

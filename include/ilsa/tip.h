@@ -5,6 +5,11 @@
  * The parameters say which processes there are: K_prime = 0 none of toughness, C_prime = 0 none of
  * leak-off. Unlike a material, scaled may have mu_prime = 0 if K_prime > 0: no viscosity, with
  * which the leak-off drops out too, and w = K' s^(1/2) / E' at every velocity.
+ *
+ * Arguments are of the whole double range, subnormal numbers included. A result beyond its largest
+ * is refused with ILSA_ERR_VALUE, all outputs left as they were; one below its smallest is rounded
+ * as usual, to a subnormal number or 0. No function raises FE_INVALID or FE_DIVBYZERO, nor
+ * FE_OVERFLOW unless a result is refused so.
  */
 #ifndef ILSA_TIP_H
 #define ILSA_TIP_H
