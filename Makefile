@@ -156,10 +156,10 @@ BENCH_WITH := $(wildcard bench/common*.c)
 BENCH      := $(call names,$(filter-out $(BENCH_WITH),$(wildcard bench/*.c)))
 
 # `make accuracy` runs bench/accuracy*.c, `make speed` those of BENCH_SPEED, nobody bench/long_*.c,
-# `make bench` the others.
+# tests/same_answer.sh bench/answer.c, `make bench` the others.
 BENCH_ACCURACY := $(filter accuracy%,$(BENCH))
 BENCH_SPEED    := $(filter speed profile tradeoff features,$(BENCH))
-BENCH_QUICK    := $(filter-out accuracy% long_% $(BENCH_SPEED),$(BENCH))
+BENCH_QUICK    := $(filter-out accuracy% long_% answer $(BENCH_SPEED),$(BENCH))
 
 PROGRAMS = $(EXAMPLES:%=$(BIN)/%) $(if $(and $(RUN),$(INIH_PC)),$(BIN)/ilsa-run)
 
@@ -250,7 +250,7 @@ $(TEST_PROGRAMS): $(BIN)/%: $(B)/obj/tests/%.o $(call objects,$(TESTS_WITH) $(BE
 	$(call link,$(call pc_libs,$(CMOCKA_PC)))
 
 # ---- Tests --------------------------------------------------------------------------------------
-.PHONY: check check-long asan usan tsan coverage
+.PHONY: check check-long asan usan tsan same-answer coverage
 T           =
 CANDIDATES := $(TESTS) $(if $(ILSA_LONG),$(TESTS_LONG))
 CHECKED    := $(if $(T),$(foreach t,$(CANDIDATES),$(if $(findstring $(T),$(t)),$(t))),$(CANDIDATES))
@@ -284,6 +284,14 @@ usan: ## the tests under UndefinedBehaviorSanitizer, division by zero included
 
 tsan: ## the tests of threads under ThreadSanitizer
 	@$(MAKE) --no-print-directory FLAVOUR=tsan check T=threads
+
+# Builds of other compilers and options, as FLAVOUR:CC:OPT.
+ANSWERS = gcc0:gcc:-O0 clang:clang:-O3 clang0:clang:-O0
+same-answer: $(BIN)/bench_answer ## one answer from gcc and clang, -O0 and -O3, threads, solvers
+	@set -e; for a in $(ANSWERS); do IFS=:; set -- $$a; unset IFS; \
+	    $(MAKE) --no-print-directory FLAVOUR=$$1 CC=$$2 OPT=$$3 build/$$1/bin/bench_answer; done
+	@sh tests/same_answer.sh $(BIN)/bench_answer \
+	    $(foreach a,$(ANSWERS),build/$(firstword $(subst :, ,$a))/bin/bench_answer)
 
 coverage: ## the lines and branches of src/ that the tests reach
 	@rm -f build/coverage/obj/src/*.gcda
