@@ -240,7 +240,7 @@ static void make_matrix(scene *s, matrix *at) {
             s->pressure[cell] = s->sigma[cell] + elastic_pressure(s, s->width, cell, EVERYWHERE);
         }
     }
-    *at = (matrix){.f = {NULL, NULL, 0, NULL}};
+    *at = (matrix){0};
     assert_int_equal(ilsai_active_create(&at->a, &def), ILSA_OK);
     assert_int_equal(ilsai_active_set(&at->a, &s->g, b, s->kind), ILSA_OK);
     assert_int_equal(ilsai_flow_reserve(&at->f, at->a.count), ILSA_OK);
