@@ -191,6 +191,29 @@ static void leak_at_front(ilsa_solver *s, const front_cell *c, double dt, tip_re
     set_leak(s, c->cell, leak);
 }
 
+/*
+ * The part of the widths of its jumps that a front is believed: in its survey cell they cannot be
+ * more than all there is. A high barrier lets a front in by less than distances are known to.
+ */
+static double jump_share(const ilsa_solver *s, const front_seed *seed) {
+    double w = ilsai_survey_jump_width(seed, seed->s), most = s->field.width[seed->cell];
+    return w > most ? most / w : 1;
+}
+
+/* What jump k adds to a cell; by_ell with the distance to it, which grows with ell: a front that
+ * has just passed a high one answers by that alone. */
+static tipcell_growth one_jump(const front_seed *seed, int k, const tipcell_front *at,
+                               double share) {
+    jump_depth d = ilsai_survey_jump_depth(seed, k);
+    double more = ILSAI_DIFFERENCE * d.value;
+    tipcell_growth one = ilsai_tipcell_jump_growth(d.value, at);
+    if (more > 0 && share == 1) {
+        double deeper = ilsai_tipcell_jump_growth(d.value + more, at).volume;
+        one.by_ell += d.by_s * (deeper - one.volume) / more;
+    }
+    return one;
+}
+
 /* Mean over the cell of what the jumps of the stress behind its front add, from the seeds' sides.
  */
 static tipcell_growth jump_width(const ilsa_solver *s, const front_cell *c,
@@ -198,9 +221,10 @@ static tipcell_growth jump_width(const ilsa_solver *s, const front_cell *c,
     tipcell_growth sum = {0, 0, 0};
     for (int p = 0; p < c->from.count; p++) {
         const front_seed *seed = &s->seeds[c->from.seed[p]];
+        double share = seed->jumps > 0 ? jump_share(s, seed) : 0;
         for (int k = 0; k < seed->jumps; k++) {
-            double part = c->from.weight[p] * seed->jump[k].height / (s->g.dx * s->g.dy);
-            tipcell_growth one = ilsai_tipcell_jump_growth(ilsai_survey_jump_depth(seed, k), at);
+            double part = share * c->from.weight[p] * seed->jump[k].height / (s->g.dx * s->g.dy);
+            tipcell_growth one = one_jump(seed, k, at, share);
             sum.volume += part * one.volume;
             sum.by_ell += part * one.by_ell;
         }
@@ -209,11 +233,12 @@ static tipcell_growth jump_width(const ilsa_solver *s, const front_cell *c,
 }
 
 /*
- * Mean width (4.18), and its derivative by an advance of the front within the step, which is one of
- * the velocity too. In a cell that has just filled it is the first guess of the coupled solve.
+ * Mean width (4.18), and its derivative: of a moving front by an advance within the step, which is
+ * one of the velocity too; of one at rest by the logarithm of its stress intensity. In a cell that
+ * has just filled it is the first guess of the coupled solve.
  */
 typedef struct rim_width {
-    double value, by_advance;
+    double value, slope;
 } rim_width;
 
 static rim_width mean_width(const ilsa_solver *s, const front_cell *c, double dt) {
@@ -221,12 +246,12 @@ static rim_width mean_width(const ilsa_solver *s, const front_cell *c, double dt
     double K_I = s->material.E_prime * c->K_num / c->K_den, V = c->V > 0 ? c->V : 0;
     double area = s->g.dx * s->g.dy;
     tipcell_growth growth = ilsai_tipcell_growth(&s->asymptote, V, K_I, &at);
-    rim_width w = {growth.volume / area, growth.by_ell / area};
+    rim_width w = {growth.volume / area, V > 0 ? growth.by_ell / area : growth.volume / area};
     if (V > 0) {
-        w.by_advance += growth.by_log_V / (area * V * dt);
+        w.slope += growth.by_log_V / (area * V * dt);
     }
     tipcell_growth added = jump_width(s, c, &at);
-    w.by_advance += added.by_ell;
+    w.slope += V > 0 ? added.by_ell : 0;
     w.value = fmax(w.value + added.volume, ILSAI_JUMP_LEFT * w.value);
     return w;
 }
@@ -245,7 +270,7 @@ static void set_cell(ilsa_solver *s, const front_cell *c, double dt, int hold, i
         rim_width w = mean_width(s, c, dt);
         double most = is_cut_off(s, c) ? s->field.width[c->cell] : w.value;
         s->trial.width[c->cell] = fmin(w.value, most);
-        s->by_advance[k] = w.by_advance;
+        s->by_advance[k] = w.slope;
     }
     if (ilsai_has_leakoff(s)) {
         leak_at_front(s, c, dt, &s->trial_tips.at[k]);
@@ -433,13 +458,14 @@ static void answer_to_seed(tip_response *r, const front_seed *seed, const answer
 static tip_response response_in(const ilsa_solver *s, const front_cell *c, double dt,
                                 double by_advance) {
     tip_response r = {.cell = c->cell};
-    answer moving = differentiate(s, c, dt, by_advance), resting = {s->trial.width[c->cell], 0, 0};
+    answer moving = differentiate(s, c, dt, by_advance), resting = {by_advance, 0, 0};
     for (int p = 0; p < c->from.count; p++) {
         const front_seed *seed = &s->seeds[c->from.seed[p]];
         if (c->V > 0) {
             answer_to_seed(&r, seed, &moving, c->from.weight[p]);
         } else if (s->trial.kind[c->cell] == ILSA_CELL_TIP) {
-            answer_to(&r, seed->cell, &resting, sqrt(seed->s) / c->K_num);
+            double part = ilsai_survey_smooth_slope(s, seed);
+            answer_to(&r, seed->cell, &resting, part * sqrt(seed->s) / c->K_num);
         }
     }
     return r;

@@ -92,7 +92,8 @@ struct ilsa_solver {
     int seed_count, seed_capacity;
     tip_response
         *responses;     /* of survey cells, and of cells that the march reached, in this pass */
-    double *by_advance; /* of each cell that the march reached: what an advance adds to its width */
+    double *by_advance; /* of each cell that the march reached: what an advance adds to its width;
+                           of one at rest what its stress intensity has brought */
     int response_count, response_capacity;
     box trial_footprint;
 

@@ -113,12 +113,29 @@ static int is_open(const ilsa_solver *s, const front_seed *seed) {
     return s->contact[seed->cell] == CONTACT_OPEN;
 }
 
+/*
+ * How far a front may be predicted to go: the width that steps of the stress add on the way is
+ * fluid that a barrier would take out of the cells behind it, until nothing were left of them.
+ */
+static double before_barrier(const front_seed *seed, double distance) {
+    double low = seed->s0, high = distance;
+    front_seed at = *seed;
+    at.s = low;
+    double most = ilsai_survey_jump_width(&at, low) + ILSAI_JUMP_PREDICTED * seed->w;
+    for (int k = 0; k < ILSAI_JUMP_BISECTIONS; k++) {
+        at.s = k > 0 ? 0.5 * (low + high) : high;
+        *(ilsai_survey_jump_width(&at, at.s) > most ? &high : &low) = at.s;
+    }
+    return low;
+}
+
 /* The front moves on as it did in the last step. */
 static void predict(ilsa_solver *s, double dt) {
     for (int k = 0; k < s->seed_count; k++) {
         front_seed *seed = &s->seeds[k];
         double advance = is_nested(s) || !is_open(s, seed) ? 0 : seed->V * dt;
-        s->distance[k] = bounded(seed, seed->s0 + advance);
+        double distance = bounded(seed, seed->s0 + advance);
+        s->distance[k] = seed->jumps > 0 ? before_barrier(seed, distance) : distance;
     }
 }
 

@@ -18,15 +18,16 @@ edge_front ilsai_survey_front(const front_seed *seed) {
     return (edge_front){seed->s, seed->cos_a, seed->sin_a, seed->exponent};
 }
 
-double ilsai_survey_jump_depth(const front_seed *seed, int k) {
-    double depth = seed->s + seed->jump[k].depth;
-    return depth > 0 ? depth * depth / (depth + ILSAI_JUMP_SOFT * seed->h) : 0;
+jump_depth ilsai_survey_jump_depth(const front_seed *seed, int k) {
+    double depth = seed->s + seed->jump[k].depth, soft = ILSAI_JUMP_SOFT * seed->h;
+    double part = depth > 0 ? depth / (depth + soft) : 0;
+    return (jump_depth){depth * part, part * (2 - part)};
 }
 
 double ilsai_survey_jump_width(const front_seed *seed, double s) {
     double sum = 0;
     for (int k = 0; k < seed->jumps; k++) {
-        sum += seed->jump[k].height * ilsai_jump_width(s, ilsai_survey_jump_depth(seed, k));
+        sum += seed->jump[k].height * ilsai_jump_width(s, ilsai_survey_jump_depth(seed, k).value);
     }
     return sum;
 }
@@ -36,6 +37,11 @@ static double smooth_width(const ilsa_solver *s, const front_seed *seed, int cel
                            double distance) {
     double w = s->trial.width[cell];
     return fmax(w - ilsai_survey_jump_width(seed, distance), ILSAI_JUMP_LEFT * w);
+}
+
+double ilsai_survey_smooth_slope(const ilsa_solver *s, const front_seed *seed) {
+    double w = s->trial.width[seed->cell];
+    return smooth_width(s, seed, seed->cell, seed->s) > ILSAI_JUMP_LEFT * w ? 1 : ILSAI_JUMP_LEFT;
 }
 
 /*
@@ -51,7 +57,7 @@ static first_term split_width(const ilsa_solver *s, const front_seed *seed) {
     edge_front seen = ilsai_survey_front(seed);
     double mean = ilsai_edge_mean(s->mesh.dx, s->mesh.dy, &seen);
     double w = smooth_width(s, seed, seed->cell, seed->s) / mean;
-    first_term out = {w, 1 / mean, 0};
+    first_term out = {w, ilsai_survey_smooth_slope(s, seed) / mean, 0};
     if (seed->inner < 0) {
         return out;
     }
@@ -67,7 +73,7 @@ static first_term split_width(const ilsa_solver *s, const front_seed *seed) {
         slope = 0;
     }
     out.width = w / (1 + term);
-    out.by_cell = (1 / (1 + term) + q * slope / ((1 + term) * (1 + term))) / mean;
+    out.by_cell *= 1 / (1 + term) + q * slope / ((1 + term) * (1 + term));
     out.by_inner = -w * q * slope / (inner * (1 + term) * (1 + term));
     return out;
 }
@@ -97,12 +103,35 @@ static double distance_for(const ilsa_solver *s, front_seed *seed, double dt) {
     return at.s;
 }
 
+/* The root of F(s) = s between what has been seen on both sides of it. */
+typedef struct bracket {
+    double low, high;
+} bracket;
+
+/* From s, where F(s) is value, along the slope; halfway where that leaves the bracket. */
+static double next_guess(bracket *b, double s, double value, double slope) {
+    double next = s + (value - s) / (1 - slope);
+    *(value > s ? &b->low : &b->high) = s;
+    return next > b->low && next < b->high ? next
+           : isfinite(b->high)             ? 0.5 * (b->low + b->high)
+                                           : fmax(next, b->low);
+}
+
+/*
+ * A front that has just passed a step of the stress into a barrier leaves the less for the
+ * asymptote the further it goes: F falls as steeply as the step is high, which takes more guesses.
+ */
 double ilsai_survey_distance(const ilsa_solver *s, front_seed *seed, double dt) {
     front_seed at = *seed;
-    double value = distance_for(s, &at, dt), slope = seed->slope, limit = ILSAI_SURVEY_SLOPE;
+    double value = distance_for(s, &at, dt), limit = ILSAI_SURVEY_SLOPE;
     double close = ILSAI_SURVEY_CLOSE * s->tolerance * at.h;
-    for (int k = 0; k < ILSAI_SURVEY_SECANTS; k++) {
-        double last = at.s, next = fmax(at.s0, last + (value - last) / (1 - slope));
+    double slope = seed->jumps > 0 ? 0 : seed->slope;
+    double least = seed->jumps > 0 ? -INFINITY : -limit;
+    bracket root = {at.s0, INFINITY};
+    int most = seed->jumps > 0 ? ILSAI_SURVEY_GUESSES : ILSAI_SURVEY_SECANTS;
+    for (int k = 0; k < most; k++) {
+        double last = at.s, straight = fmax(at.s0, last + (value - last) / (1 - slope));
+        double next = seed->jumps > 0 ? next_guess(&root, last, value, slope) : straight;
         if (!(fabs(next - last) > close)) {
             break;
         }
@@ -110,7 +139,7 @@ double ilsai_survey_distance(const ilsa_solver *s, front_seed *seed, double dt) 
         at.V = (next - at.s0) / dt;
         ilsai_survey_settle(s, &at);
         double fresh = distance_for(s, &at, dt);
-        slope = fmax(-limit, fmin(limit, (fresh - value) / (next - last)));
+        slope = fmax(least, fmin(limit, (fresh - value) / (next - last)));
         value = fresh;
     }
     seed->slope = fabs(slope) < limit ? slope : 0; /* one at the limit would lead astray */

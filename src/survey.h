@@ -21,10 +21,16 @@ void ilsai_survey_settle(const ilsa_solver *s, front_seed *seed);
  * How far the seed's front is beyond jump k; 0 before it. Softened: the width of a jump begins with
  * the root of its depth, and an iteration on the front would not find its way past it.
  */
-double ilsai_survey_jump_depth(const front_seed *seed, int k);
+typedef struct jump_depth {
+    double value, by_s;
+} jump_depth;
+jump_depth ilsai_survey_jump_depth(const front_seed *seed, int k);
 
 /* Width that the jumps of the stress add at a distance s from the seed's front. */
 double ilsai_survey_jump_width(const front_seed *seed, double s);
+
+/* What of a change of a survey cell's width is not that of its jumps: 1, but for the least part. */
+double ilsai_survey_smooth_slope(const ilsa_solver *s, const front_seed *seed);
 
 /* The front as the survey cell sees it, at the seed's distance and V. */
 edge_front ilsai_survey_front(const front_seed *seed);

@@ -94,9 +94,11 @@
 #define ILSAI_SHAPE_POINTS    4
 #define ILSAI_SHAPE_SPAN      0.4
 #define ILSAI_SHAPE_CURVATURE 0.5
-/* Survey: secant steps to the distance that agrees with the second term, the change at which they
- * end, in tolerances of the front, and the largest slope that they believe. */
+/* Survey: secant steps to the distance that agrees with the second term, the same where the stress
+ * jumps, the change at which they end, in tolerances of the front, and the largest slope that they
+ * believe. */
 #define ILSAI_SURVEY_SECANTS 3
+#define ILSAI_SURVEY_GUESSES 20
 #define ILSAI_SURVEY_CLOSE   1e-3
 #define ILSAI_SURVEY_SLOPE   0.7
 /* Survey: how far behind the cell steps of the stress are looked for, in cells. */
@@ -105,6 +107,10 @@
 #define ILSAI_JUMP_SOFT 0.05
 /* Survey: least part of a width that is left for the asymptote once such steps have theirs. */
 #define ILSAI_JUMP_LEFT 0.02
+/* Front: part of a survey cell's width that a predicted front's stress steps may add, and the
+ * halvings that find how far that is. */
+#define ILSAI_JUMP_PREDICTED  0.3
+#define ILSAI_JUMP_BISECTIONS 30
 /* Width behind the tip: largest part that the term after the asymptote may have. */
 #define ILSAI_NEXT_TERM_MAX 0.3
 
