@@ -10,9 +10,12 @@ ilsa_material_def ilsa_material_def_default(void) {
 ilsa_status ilsai_material_check(const ilsa_material_def *def, error_text *error) {
     ilsa_status status = ilsai_check_positive(error, "E_prime", def->E_prime);
     if (!status)
-        status = ilsai_check_positive(error, "mu_prime", def->mu_prime);
+        status = ilsai_check_not_negative(error, "mu_prime", def->mu_prime);
     if (!status)
         status = ilsai_check_not_negative(error, "K_prime", def->K_prime);
+    if (!status && def->mu_prime == 0 && def->K_prime == 0)
+        status = ilsai_fail(error, ILSA_ERR_VALUE,
+                            "mu_prime = 0: must be > 0 where K_prime = 0, nothing holds the front");
     if (!status)
         status = ilsai_check_not_negative(error, "C_prime", def->C_prime);
     return status;
@@ -23,7 +26,7 @@ static ilsa_status check_rock(const ilsa_rock *rock, error_text *error) {
     if (!status && !(rock->nu >= 0 && rock->nu <= 0.5))
         status = ilsai_fail(error, ILSA_ERR_VALUE, "nu = %g: must be 0 .. 0.5", rock->nu);
     if (!status)
-        status = ilsai_check_positive(error, "mu", rock->mu);
+        status = ilsai_check_not_negative(error, "mu", rock->mu);
     if (!status)
         status = ilsai_check_not_negative(error, "K_Ic", rock->K_Ic);
     if (!status)

@@ -74,6 +74,7 @@ static identity identify(const ilsa_solver *s) {
     id.source_count = s->def.source_count;
     id.level = s->def.level;
     id.material = s->material;
+    id.material.mu_prime = s->inviscid ? 0 : s->material.mu_prime;
     id.step_cells = s->step_cells;
     id.tolerance = s->tolerance;
     id.dt_max = s->def.dt_max;
@@ -105,6 +106,7 @@ static void pass_state(stream *io, state *now) {
     packed.started = now->started;
     packed.mirror_x = now->mirror_x;
     packed.mirror_y = now->mirror_y;
+    packed.mu_prime = now->mu_prime;
     packed.time = now->time;
     packed.dt_limit = now->dt_limit;
     packed.injected = now->injected;
@@ -309,6 +311,11 @@ static int box_on_mesh(const ilsa_solver *s, const box *b) {
            b->y1 < s->mesh.ny;
 }
 
+/* The material's, or where it has none one that can stand for it. */
+static int is_viscosity(const ilsa_solver *s, double mu_prime) {
+    return s->inviscid ? isfinite(mu_prime) && mu_prime > 0 : mu_prime == s->material.mu_prime;
+}
+
 /* Reads all but the fields; *io is left at them. */
 static ilsa_status read_head(stream *io, const ilsa_solver *s, incoming *from) {
     identity id, own = identify(s);
@@ -321,7 +328,8 @@ static ilsa_status read_head(stream *io, const ilsa_solver *s, incoming *from) {
     }
     from->mesh = (ilsa_mesh_def){id.nx, id.ny, id.dx, id.dy};
     pass(io, &from->now, sizeof from->now);
-    if (io->failed || !from->now.started || !box_on_mesh(s, &from->now.footprint)) {
+    if (io->failed || !from->now.started || !box_on_mesh(s, &from->now.footprint) ||
+        !is_viscosity(s, from->now.mu_prime)) {
         return ILSA_ERR_SNAPSHOT;
     }
     ilsa_status status = read_sources(io, s, from);
@@ -358,6 +366,7 @@ static void adopt(ilsa_solver *s, incoming *from, elasticity *e, stream *io) {
     tip_records tips = s->tips;
     s->mesh = from->mesh;
     s->now = from->now;
+    ilsai_solver_set_viscosity(s, from->now.mu_prime);
     s->stress = from->stress;
     s->tips = from->tips;
     from->stress = stress;

@@ -102,6 +102,11 @@ static tip_law asymptote_of(const ilsa_material_def *material, ilsa_tip_model ti
     return law;
 }
 
+void ilsai_solver_set_viscosity(ilsa_solver *s, double mu_prime) {
+    s->now.mu_prime = s->material.mu_prime = mu_prime;
+    s->asymptote = asymptote_of(&s->material, s->def.tip);
+}
+
 static void set_options(ilsa_solver *s, const ilsa_solver_def *def) {
     static const double step[ILSAI_LEVELS] = ILSAI_LEVEL_STEP;
     static const double tolerance[ILSAI_LEVELS] = ILSAI_LEVEL_TOLERANCE;
@@ -113,6 +118,7 @@ static void set_options(ilsa_solver *s, const ilsa_solver_def *def) {
     s->mesh = def->mesh->def;
     s->material = def->material->def;
     s->asymptote = asymptote_of(&s->material, def->tip);
+    s->inviscid = s->material.mu_prime == 0;
     s->step_cells = def->step_cells > 0 ? def->step_cells : step[def->level - 1];
     s->tolerance = def->tolerance > 0 ? def->tolerance : tolerance[def->level - 1];
 }
@@ -231,6 +237,20 @@ const char *ilsa_last_error(const ilsa_solver *solver) {
     return solver ? solver->error.text : ilsai_thread_error()->text;
 }
 
+/*
+ * The material that the penny is made with. The viscosity mu' counts as mu' Q E'^3 / (K'^4 R), to
+ * the toughness, in a penny of radius R without leak-off, and less with it.
+ */
+static ilsa_material_def start_material(const ilsa_solver *s) {
+    ilsa_material_def m = s->material;
+    if (s->inviscid) {
+        double R = fmin(s->mesh.dx, s->mesh.dy), Q = s->sources[0].def.rate;
+        m.mu_prime =
+            exp(log(ILSAI_INVISCID) + 4 * log(m.K_prime) + log(R) - log(Q) - 3 * log(m.E_prime));
+    }
+    return m;
+}
+
 /* Starts from a solution that was found for a radius or a time; what says which and its value. */
 static ilsa_status start(ilsa_solver *s, ilsa_status found, const radial_solution *solution,
                          const char *what, double value) {
@@ -260,8 +280,8 @@ ilsa_status ilsa_start_radial(ilsa_solver *solver, double radius) {
         return status;
     }
     radial_solution solution;
-    status =
-        ilsai_radial_at_radius(&solver->material, solver->sources[0].def.rate, radius, &solution);
+    ilsa_material_def material = start_material(solver);
+    status = ilsai_radial_at_radius(&material, solver->sources[0].def.rate, radius, &solution);
     return start(solver, status, &solution, "radius", radius);
 }
 
@@ -271,7 +291,8 @@ ilsa_status ilsa_start_radial_at(ilsa_solver *solver, double time) {
         return status;
     }
     radial_solution solution;
-    status = ilsai_radial_at_time(&solver->material, solver->sources[0].def.rate, time, &solution);
+    ilsa_material_def material = start_material(solver);
+    status = ilsai_radial_at_time(&material, solver->sources[0].def.rate, time, &solution);
     return start(solver, status, &solution, "time", time);
 }
 

@@ -153,6 +153,7 @@ void ilsai_start_lay(ilsa_solver *s, const radial_solution *solution) {
         ilsai_fields_clear_box(&s->field, &s->mesh, &old);
     }
     s->now = fresh;
+    ilsai_solver_set_viscosity(s, solution->scaled.mu_prime);
     s->tips.count = 0;
     box all = reach(s, &p, solution->R + ilsai_solver_band(s));
     for (int j = all.y0; j <= all.y1; j++) {

@@ -40,6 +40,7 @@ typedef struct tip_records {
 typedef struct state {
     int started;
     int mirror_x, mirror_y; /* the fields are symmetric about x = 0, about y = 0 */
+    double mu_prime;        /* viscosity: the material's, or what stands for none */
     double time;
     double dt_limit;                   /* longest step that the last rejection still allows */
     double injected, leaked, fracture; /* volumes */
@@ -60,8 +61,9 @@ typedef struct point_source {
 } point_source;
 
 struct ilsa_solver {
-    ilsa_mesh_def mesh; /* as it is now */
-    ilsa_material_def material;
+    ilsa_mesh_def mesh;         /* as it is now */
+    ilsa_material_def material; /* its viscosity is now.mu_prime once there is a fracture */
+    int inviscid;               /* the material was given without viscosity */
     tip_law asymptote; /* the part of it that rules the width behind the front: the tip model */
     ilsa_stress *stress;
     point_source *sources;
@@ -125,6 +127,9 @@ void ilsai_tip_records_sort(tip_records *r);
 
 /* ILSA_ERR_STATE and a message unless a fracture has been started. */
 ilsa_status ilsai_check_started(const ilsa_solver *s, error_text *error);
+
+/* The viscosity from now on: the material's, or what stands for none (see material.h). */
+void ilsai_solver_set_viscosity(ilsa_solver *s, double mu_prime);
 
 /* Cells and parts of every source on the mesh as it is now. */
 void ilsai_sources_place(ilsa_solver *s);

@@ -114,6 +114,9 @@
 /* Width behind the tip: largest part that the term after the asymptote may have. */
 #define ILSAI_NEXT_TERM_MAX 0.3
 
+/* Start: viscosity that stands for none, as a part of what a penny of one cell would feel. Widths
+ * and pressures differ by about that part; from 1e-17 on rounding is felt. */
+#define ILSAI_INVISCID 1e-10
 /* Start: smallest radius of the penny, in cells. */
 #define ILSAI_START_CELLS 2.0
 

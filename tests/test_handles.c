@@ -204,11 +204,14 @@ static void material_refuses_bad_definitions(void **state) {
             def = good;
             double *value[] = {&def.E_prime, &def.mu_prime, &def.K_prime, &def.C_prime};
             *value[m] = size[n];
-            if (m >= 2 && size[n] == 0)
+            if (m >= 1 && size[n] == 0)
                 assert_int_equal(try_material(def), ILSA_OK);
             else
                 check_failed(try_material(def), ILSA_ERR_VALUE, name[m]);
         }
+    def = good;
+    def.mu_prime = def.K_prime = 0;
+    check_failed(try_material(def), ILSA_ERR_VALUE, "mu_prime = 0: must be > 0 where K_prime = 0");
 }
 
 static void material_lives_and_dies(void **state) {

@@ -10,11 +10,17 @@ extern "C" {
 
 typedef struct ilsa_material ilsa_material;
 
+/*
+ * A fluid without viscosity has the same pressure everywhere. A solver lets one stand for it whose
+ * viscosity is too small to be felt: ten powers of ten below what a penny of one cell at the rate
+ * of its start would feel.
+ */
+
 /* Any consistent units; in SI: Pa, Pa s, Pa m^(1/2), m s^(-1/2). */
 typedef struct ilsa_material_def {
     double E_prime;  /* plane strain modulus E / (1 - nu^2), > 0 */
-    double mu_prime; /* scaled viscosity 12 mu, > 0 */
-    double K_prime;  /* scaled toughness 4 (2 / pi)^(1/2) K_Ic, >= 0 */
+    double mu_prime; /* scaled viscosity 12 mu, >= 0; 0: the pressure is uniform, see below */
+    double K_prime;  /* scaled toughness 4 (2 / pi)^(1/2) K_Ic, >= 0; > 0 where mu_prime = 0 */
     double C_prime;  /* scaled leak-off coefficient 2 C_L, >= 0 */
 } ilsa_material_def;
 
@@ -22,12 +28,12 @@ typedef struct ilsa_material_def {
 typedef struct ilsa_rock {
     double E;    /* Young's modulus, stress, > 0 */
     double nu;   /* Poisson's ratio, 0 <= nu <= 0.5 */
-    double mu;   /* dynamic viscosity of the fluid, stress time, > 0 */
+    double mu;   /* dynamic viscosity of the fluid, stress time, >= 0 */
     double K_Ic; /* fracture toughness, stress length^(1/2), >= 0 */
     double C_L;  /* Carter's leak-off coefficient, length time^(-1/2), >= 0 */
 } ilsa_rock;
 
-/* A definition with every member zero: E_prime and mu_prime must be given. */
+/* A definition with every member zero: E_prime, and mu_prime or K_prime, must be given. */
 ILSA_API ilsa_material_def ilsa_material_def_default(void);
 
 /* The scaled parameters (2.1) of a rock and its fluid. ILSA_ERR_NULL, ILSA_ERR_VALUE. */

@@ -3,7 +3,7 @@
  * pure functions, no handle, safe from any thread.
  *
  * The parameters say which processes there are: K_prime = 0 none of toughness, C_prime = 0 none of
- * leak-off. Unlike a material, scaled may have mu_prime = 0 if K_prime > 0: no viscosity, with
+ * leak-off. As in a material, mu_prime = 0 goes with K_prime > 0: no viscosity, with
  * which the leak-off drops out too, and w = K' s^(1/2) / E' at every velocity.
  *
  * Arguments are of the whole double range, subnormal numbers included. A result beyond its largest
