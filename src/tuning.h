@@ -34,7 +34,7 @@
 
 /* Front: from this pass on the cells at the front no longer answer within the Newton system, and
  * the distances are accelerated instead: a step that has not converged by then goes to and fro. */
-#define ILSAI_RESPONSE_PASSES 8
+#define ILSAI_RESPONSE_PASSES 16
 /* Front: volume leaking in a step over that in the fracture from which on the front moves with the
  * widths in the first pass too. */
 #define ILSAI_LEAK_FAST 3.0

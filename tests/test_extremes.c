@@ -52,7 +52,7 @@ static void stress_fields(void **unused) {
     sample("thin layers", 3, 2);
     sample("layers off the edges", 11, 1);
     sample("drops", 4, 3);
-    sample("islands", 3, 4);
+    sample("islands", 3, 2);
 }
 
 static void changes_of_rate(void **unused) {
