@@ -19,7 +19,8 @@ void ilsai_survey_settle(const ilsa_solver *s, front_seed *seed);
 
 /*
  * How far the seed's front is beyond jump k; 0 before it. Softened: the width of a jump begins with
- * the root of its depth, and an iteration on the front would not find its way past it.
+ * the root of its depth, and an iteration on the front would not find its way past it. by_s is its
+ * derivative by the seed's distance.
  */
 typedef struct jump_depth {
     double value, by_s;
