@@ -64,13 +64,18 @@ static first_term split_width(const ilsa_solver *s, const front_seed *seed) {
     double deep = seed->s + seed->depth, here = seed->asymptote, there = seed->deep;
     seen.s = deep;
     there *= ilsai_edge_mean(s->mesh.dx, s->mesh.dy, &seen);
-    double inner = smooth_width(s, seed, seed->inner, deep), q = inner * here / (w * there);
+    double inner = smooth_width(s, seed, seed->inner, deep);
+    if (!(w * there > 0 && inner > 0)) {
+        return out; /* a width that Newton's iteration has brought down to nothing */
+    }
+    double q = inner * here / (w * there);
     double below = deep - q * seed->s, limit = ILSAI_NEXT_TERM_MAX;
     double term = below > 0 ? (q - 1) * seed->s / below : limit;
-    double slope = seed->s * seed->depth / (below * below); /* d term / d q */
-    if (!(fabs(term) < limit)) {
+    double slope = 0; /* d term / d q */
+    if (fabs(term) < limit) {
+        slope = seed->s * seed->depth / (below * below);
+    } else {
         term = term > 0 ? limit : -limit;
-        slope = 0;
     }
     out.width = w / (1 + term);
     out.by_cell *= 1 / (1 + term) + q * slope / ((1 + term) * (1 + term));
