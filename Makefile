@@ -155,11 +155,11 @@ TESTS_WITH := $(filter-out tests/test_% tests/long_%,$(wildcard tests/*.c))
 BENCH_WITH := $(wildcard bench/common*.c)
 BENCH      := $(call names,$(filter-out $(BENCH_WITH),$(wildcard bench/*.c)))
 
-# `make accuracy` runs bench/accuracy*.c, `make speed` those of BENCH_SPEED, nobody bench/long_*.c,
-# tests/same_answer.sh bench/answer.c, `make bench` the others.
+# `make accuracy` runs bench/accuracy*.c, `make speed` those of BENCH_SPEED, `make extremes` its own,
+# nobody bench/long_*.c, tests/same_answer.sh bench/answer.c, `make bench` the others.
 BENCH_ACCURACY := $(filter accuracy%,$(BENCH))
 BENCH_SPEED    := $(filter speed profile tradeoff features,$(BENCH))
-BENCH_QUICK    := $(filter-out accuracy% long_% answer $(BENCH_SPEED),$(BENCH))
+BENCH_QUICK    := $(filter-out accuracy% extremes long_% answer $(BENCH_SPEED),$(BENCH))
 
 PROGRAMS = $(EXAMPLES:%=$(BIN)/%) $(if $(and $(RUN),$(INIH_PC)),$(BIN)/ilsa-run)
 
@@ -300,7 +300,7 @@ coverage: ## the lines and branches of src/ that the tests reach
 	    | awk -f tests/coverage.awk
 
 # ---- Programs that measure and draw -------------------------------------------------------------
-.PHONY: benches bench accuracy speed demo figures paper-figures
+.PHONY: benches bench accuracy speed extremes demo figures paper-figures
 benches: $(BENCH_PROGRAMS) ## builds all of bench/
 
 bench: $(BENCH_PROGRAMS) ## the quick programs of bench/
@@ -311,6 +311,9 @@ accuracy: $(BENCH_ACCURACY:%=$(BIN)/bench_%) ## the tables of bench/accuracy*.c
 
 speed: $(BENCH_SPEED:%=$(BIN)/bench_%) ## the tables of docs/speed.md, in a quarter of an hour
 	@set -e; for b in $(BENCH_SPEED); do echo "== bench_$$b"; $(BIN)/bench_$$b; done
+
+extremes: $(BIN)/bench_extremes ## the table of docs/extremes.md, in three minutes
+	$<
 
 DEMO = symmetric_phi1e-2
 demo: $(BIN)/ilsa-run ## the paper's three-layer fracture to 3600 s, and its figures, in out/demo
