@@ -119,7 +119,25 @@ static int plan_batch(fft *f, batch *b, fftw_plan (*make)(fft *f, int count, int
     return (b->part || !whole) && (b->rest || !rest);
 }
 
+/*
+ * FFTW's planner ends the process where it gets no memory, so what it needs is asked for first and
+ * given back to it. Measured: 190 kB in the first plans of a process, and 37 bytes for each point
+ * of the longest transform.
+ */
+#define FFT_PLANNER_BYTES         ((size_t)256 << 10)
+#define FFT_PLANNER_BYTES_A_POINT ((size_t)64)
+
+static int planner_has_memory(const fft *f) {
+    size_t points = 2 * ((size_t)f->cx + (size_t)f->cy);
+    void *volatile room = malloc(FFT_PLANNER_BYTES + FFT_PLANNER_BYTES_A_POINT * points);
+    int there = room != NULL;
+    free(room);
+    return there;
+}
+
 static int plan(fft *f) {
+    if (!planner_has_memory(f))
+        return 0;
     make_planner_safe();
     return plan_batch(f, &f->rows_there, plan_rows, f->cy, 0) &&
            plan_batch(f, &f->columns_there, plan_columns, f->cx + 1, 0) &&

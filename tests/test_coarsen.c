@@ -1,7 +1,6 @@
 /* The state on cells twice as large: nothing lost, and the fracture goes on as it did. */
 #include "csv.h"
 #include "error.h"
-#include "failing_malloc.h"
 #include "host.h"
 #include "state.h"
 
@@ -438,32 +437,6 @@ static void bad_calls_are_refused(void **unused) {
     ilsa_solver_destroy(&solver);
 }
 
-#ifdef CAN_FAIL
-static void coarsening_survives_no_memory(void **unused) {
-    (void)unused;
-    host_scene scene = scene_of(7);
-    ilsa_solver *solver = host_started(&scene, 0.9);
-    host_steps(solver, 2);
-    host_image before = host_save(solver);
-    int failures = 0;
-    ilsa_status status = ILSA_ERR_MEMORY;
-    for (int most = 0; status != ILSA_OK; most++) {
-        allocations_left = most;
-        status = ilsa_coarsen(solver);
-        allocations_left = -1;
-        failures += status != ILSA_OK;
-        assert_true(status == ILSA_OK || status == ILSA_ERR_MEMORY);
-        if (status) {
-            check_message(ilsa_last_error(solver), "no memory");
-            assert_true(host_is(solver, &before));
-        }
-    }
-    assert_true(failures > 8);
-    host_free(&before);
-    ilsa_solver_destroy(&solver);
-}
-#endif
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(volumes_are_kept),
@@ -478,9 +451,6 @@ int main(void) {
         cmocka_unit_test(advance_coarsens_only_if_told),
         cmocka_unit_test(symmetric_states_stay_symmetric),
         cmocka_unit_test(bad_calls_are_refused),
-#ifdef CAN_FAIL
-        cmocka_unit_test(coarsening_survives_no_memory),
-#endif
     };
     return cmocka_run_group_tests_name("coarsen", tests, NULL, NULL);
 }

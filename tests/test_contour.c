@@ -1,6 +1,6 @@
 /* The front as polylines, and where the summary sees it. */
 #include "error.h"
-#include "failing_realloc.h"
+#include "failing.h"
 #include "host.h"
 #include "state.h"
 
@@ -383,7 +383,6 @@ static void bad_calls_are_refused(void **unused) {
     ilsa_solver_destroy(&solver);
 }
 
-#ifdef CAN_FAIL
 static void no_memory_is_reported(void **unused) {
     (void)unused;
     host_scene scene = host_penny(0, 81, 0.1);
@@ -406,7 +405,6 @@ static void no_memory_is_reported(void **unused) {
     check_circle(solver, 0, 0, 3, 0.001);
     ilsa_solver_destroy(&solver);
 }
-#endif
 
 int main(void) {
     const struct CMUnitTest tests[] = {
@@ -422,9 +420,7 @@ int main(void) {
         cmocka_unit_test(every_saddle_is_resolved),
         cmocka_unit_test(zeros_and_infinities_are_finite_points),
         cmocka_unit_test(bad_calls_are_refused),
-#ifdef CAN_FAIL
         cmocka_unit_test(no_memory_is_reported),
-#endif
     };
     return cmocka_run_group_tests_name("contour", tests, NULL, NULL);
 }

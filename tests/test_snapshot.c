@@ -1,6 +1,6 @@
 /* Snapshots: the same bits after a restore, and nothing changed by an image that is refused. */
 #include "error.h"
-#include "failing_malloc.h"
+#include "failing.h"
 #include "host.h"
 
 #include <math.h>
@@ -553,35 +553,6 @@ static void unsound_images_do_no_harm(void **state) {
     ilsa_solver_destroy(&solver);
 }
 
-#ifdef CAN_FAIL
-/* Each allocation of a restore fails once. */
-static void restore_survives_no_memory(void **state) {
-    (void)state;
-    host_scene scene = small_scene();
-    ilsa_solver *solver = running(&scene, 8);
-    host_image fine = host_save(solver);
-    assert_int_equal(ilsa_coarsen(solver), ILSA_OK);
-    host_image coarse = host_save(solver);
-    int failures = 0;
-    ilsa_status status = ILSA_ERR_MEMORY;
-    for (int most = 0; status != ILSA_OK; most++) {
-        allocations_left = most;
-        status = ilsa_snapshot_restore(solver, fine.bytes, fine.size);
-        allocations_left = -1;
-        if (status != ILSA_OK) {
-            assert_int_equal(status, ILSA_ERR_MEMORY);
-            check_message(ilsa_last_error(solver), "no memory");
-            assert_true(host_is(solver, &coarse));
-            failures++;
-        }
-    }
-    assert_true(failures >= 3);
-    assert_true(host_is(solver, &fine));
-    host_free(&fine);
-    host_free(&coarse);
-    ilsa_solver_destroy(&solver);
-}
-
 /* Saving needs no memory, so a host can do it when there is none. */
 static void save_needs_no_memory(void **state) {
     (void)state;
@@ -598,7 +569,6 @@ static void save_needs_no_memory(void **state) {
     host_free(&image);
     ilsa_solver_destroy(&solver);
 }
-#endif
 
 int main(void) {
     const struct CMUnitTest tests[] = {
@@ -619,10 +589,7 @@ int main(void) {
         cmocka_unit_test(other_definitions_are_refused),
         cmocka_unit_test(refusal_without_a_fracture),
         cmocka_unit_test(unsound_images_do_no_harm),
-#ifdef CAN_FAIL
-        cmocka_unit_test(restore_survives_no_memory),
         cmocka_unit_test(save_needs_no_memory),
-#endif
     };
     return cmocka_run_group_tests_name("snapshot", tests, NULL, NULL);
 }

@@ -1,6 +1,5 @@
 /* Every function of solver.h: bad input of each kind, then what good input gives. */
 #include "elasticity.h"
-#include "failing_malloc.h"
 #include "host.h"
 #include "tuning.h"
 
@@ -246,32 +245,6 @@ static void destroy_takes_anything(void **state) {
     assert_null(solver);
     ilsa_solver_destroy(&solver);
 }
-
-#ifdef CAN_FAIL
-/* Every allocation of a create fails once; AddressSanitizer sees elsewhere that nothing leaks. */
-static void create_survives_no_memory(void **state) {
-    (void)state;
-    parts p;
-    make_parts(&p);
-    ilsa_solver *solver = NULL;
-    int failures = 0;
-    ilsa_status status = ILSA_ERR_MEMORY;
-    for (int most = 0; status != ILSA_OK; most++) {
-        allocations_left = most;
-        status = ilsa_solver_create(&p.def, &solver);
-        allocations_left = -1;
-        if (status) {
-            assert_int_equal(status, ILSA_ERR_MEMORY);
-            check_message(ilsa_last_error(NULL), "no memory");
-            assert_null(solver);
-            failures++;
-        }
-    }
-    assert_true(failures > 15);
-    ilsa_solver_destroy(&solver);
-    free_parts(&p);
-}
-#endif
 
 /* Symmetry */
 
@@ -989,9 +962,6 @@ int main(void) {
         cmocka_unit_test(create_refuses_what_does_not_match),
         cmocka_unit_test(create_refuses_toughness_without_any),
         cmocka_unit_test(destroy_takes_anything),
-#ifdef CAN_FAIL
-        cmocka_unit_test(create_survives_no_memory),
-#endif
         cmocka_unit_test(symmetry_is_found_in_the_stress),
         cmocka_unit_test(symmetry_is_found_in_the_sources),
         cmocka_unit_test(symmetry_is_found_in_the_state),

@@ -1,6 +1,5 @@
 /* The physics of a step: what it must conserve, leave alone, mirror and scale. */
 #include "../src/jump.h"
-#include "failing_realloc.h"
 #include "host.h"
 #include "state.h"
 
@@ -272,43 +271,6 @@ static void source_outside_the_fracture(void **unused) {
     host_free(&before);
     ilsa_solver_destroy(&solver);
 }
-
-#ifdef CAN_FAIL
-/* The first step after a start, where everything is allocated: each allocation fails once. */
-static void steps_survive_no_memory(void **unused) {
-    (void)unused;
-    host_scene scene = rich_scene();
-    scene.options.product = ILSA_PRODUCT_BLAS; /* FFTW's planner aborts without memory */
-    for (int linear = ILSA_LINEAR_GMRES; linear <= ILSA_LINEAR_DENSE; linear++) {
-        scene.options.linear = (ilsa_linear_solver)linear;
-        ilsa_solver *solver = host_started(&scene, 7);
-        host_image before = host_save(solver);
-        double dt = 0.7 * suggested(solver);
-        int failures = 0;
-        ilsa_status status = ILSA_ERR_MEMORY;
-        for (int most = 0; status != ILSA_OK; most++) {
-            allocations_left = most;
-            status = ilsa_step(solver, dt, NULL);
-            allocations_left = -1;
-            failures += status != ILSA_OK;
-            assert_true(status == ILSA_OK || status == ILSA_ERR_MEMORY);
-            if (status) {
-                check_message(ilsa_last_error(solver), "no memory");
-                assert_true(host_is(solver, &before));
-            }
-        }
-        host_image after = host_save(solver);
-        host_restore(solver, &before);
-        host_step(solver, dt);
-        assert_true(host_is(solver, &after));
-        print_message("step: %d allocations of the first step failed in turn\n", failures);
-        assert_true(failures > 10);
-        host_free(&before);
-        host_free(&after);
-        ilsa_solver_destroy(&solver);
-    }
-}
-#endif
 
 /* Mirror images */
 
@@ -876,9 +838,6 @@ int main(void) {
         cmocka_unit_test(small_steps_are_taken),
         cmocka_unit_test(mesh_edge_is_its_own_status),
         cmocka_unit_test(source_outside_the_fracture),
-#ifdef CAN_FAIL
-        cmocka_unit_test(steps_survive_no_memory),
-#endif
         cmocka_unit_test(mirrored_scenes_give_mirrored_answers),
         cmocka_unit_test(folded_scenes_give_the_whole_answer),
         cmocka_unit_test(folding_is_exact_but_for_tolerance),
