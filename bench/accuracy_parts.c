@@ -178,7 +178,7 @@ static void marching(void) {
            "10 positions of the front in the cells. Without the front's curvature the update is "
            "the paper's (4.12).\n\n| cells per radius | dx/dy | curvature | mean | axis | "
            "diagonal | largest - smallest |\n|---|---|---|---|---|---|---|\n");
-    for (double cells = 5; cells <= 40; cells *= 2)
+    for (int cells = 5; cells <= 40; cells *= 2)
         for (int k = 0; k < 4; k++)
             marching_row(cells, 1 + k % 2, k / 2);
 }
@@ -203,8 +203,9 @@ static double mean_over(const radial_solution *s, of_radius *f, double until, do
     enum { POINTS = 64 };
     double sum = 0;
     for (int k = 0; k < POINTS * POINTS; k++) {
-        const double u = ((k % POINTS + 0.5) / POINTS - 0.5) * dx;
-        const double v = ((k / POINTS + 0.5) / POINTS - 0.5) * dy;
+        const int i = k % POINTS, j = k / POINTS;
+        const double u = ((i + 0.5) / POINTS - 0.5) * dx;
+        const double v = ((j + 0.5) / POINTS - 0.5) * dy;
         sum += f(s, hypot(x + u, y + v) / s->R, until);
     }
     return sum / (POINTS * POINTS);
@@ -244,8 +245,8 @@ static void survey(void) {
            "| case | cells per radius | s = 0.75 | 1 | 1.5 | 2 |\n|---|---|---|---|---|---|\n");
     for (int k = 0; k < PENNY_CASES; k++) {
         const radial_solution s = solution_of(k);
-        for (double cells = 5; cells <= 40; cells *= 2) {
-            const double h = s.R / cells;
+        for (int n = 5; n <= 40; n *= 2) {
+            const double cells = n, h = s.R / cells;
             printf("| %s | %g |", penny_cases[k].law.name, cells);
             for (int i = 0; i < 4; i++)
                 printf(" %+.2f, %+.2f |", 100 * survey_error(&s, distance[i] * h, h, 0),
@@ -447,9 +448,9 @@ static void elastic(void) {
            "axis | diagonal | C + D: mean | axis | diagonal | C + D, (4.18): mean | axis | "
            "diagonal |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
     for (int k = 0; k < PENNY_CASES; k++) {
-        for (double cells = 5; cells <= 40; cells *= 2)
+        for (int cells = 5; cells <= 40; cells *= 2)
             elasticity_row(k, cells, 1);
-        for (double cells = 10; cells <= 20; cells *= 2)
+        for (int cells = 10; cells <= 20; cells *= 2)
             elasticity_row(k, cells, 2);
     }
     printf("\nThe same by the distance of the survey cell from the front, in cells; 20 cells per "
@@ -502,7 +503,8 @@ static void leakoff(void) {
            "| cells per radius | dx/dy | root at the centre, (4.8) | mean of the root |\n"
            "|---|---|---|---|\n");
     for (int aspect = 1; aspect <= 2; aspect++)
-        for (double cells = 10; cells <= 80; cells *= 2) {
+        for (int n = 10; n <= 80; n *= 2) {
+            const double cells = n;
             disc d = make_disc(cells, aspect, s.R, s.R);
             const leakage leak = leak_of(&d, &s);
             printf("| %g | %d | %+.2f | %+.2f |\n", cells, aspect,

@@ -36,6 +36,7 @@ static void load(void) {
     for (int k = 0; k < RADIAL_PHIS * RADIAL_TAUS; k++) {
         penny *p = &table[k / RADIAL_TAUS][k % RADIAL_TAUS];
         double phi, V, error;
+        /* NOLINTNEXTLINE(cert-err34-c): our own table; a number out of range becomes infinite */
         if (fscanf(file, "%lf,%lf,%lf,%lf,%lf,%lf,%lf,%lf,%lf,%lf", &phi, &p->time, &p->R,
                    &p->efficiency, &p->width, &V, &slope[k / RADIAL_TAUS][k % RADIAL_TAUS],
                    &p->width_half, &p->pressure_half, &error) != 10)
@@ -255,7 +256,7 @@ radial_front radial_measure(ilsa_solver *solver) {
 static double on_axis(const ilsa_mesh_def *m, const double *field, double x) {
     const double at = x / m->dx + 0.5 * (m->nx - 1);
     const int i = (int)floor(at);
-    return cubic(field + m->ny / 2 * m->nx + i - 1, at - i);
+    return cubic(field + (size_t)(m->ny / 2) * (size_t)m->nx + i - 1, at - i);
 }
 
 penny radial_state(ilsa_solver *solver) {

@@ -17,11 +17,11 @@ enum { SCENES = LAYER_SCENES + FIG_SCENES, MAX_TIMES = LAYER_TIMES };
 /* One scene's run. */
 typedef struct run {
     const char *name;
-    ilsa_status status;
     ilsa_summary at[MAX_TIMES]; /* at its output times */
-    int reached;                /* of them */
     ilsa_profile profile;
-    double balance;     /* worst of injected - fracture - leaked over injected */
+    double balance; /* worst of injected - fracture - leaked over injected */
+    ilsa_status status;
+    int reached;        /* of the output times */
     int median, worst;  /* products of a step, refused attempts included */
     int worst_unknowns; /* largest number of unknowns */
 } run;
@@ -181,6 +181,7 @@ int main(int argc, char **argv) {
     int count = 0;
     for (int k = 0; k < SCENES; k++) {
         const fig_scene *fig = k < FIG_SCENES ? &fig_scenes[k] : NULL;
+        /* cppcheck-suppress negativeIndex ; takes no notice of the condition */
         const layer_scene *layers = fig ? NULL : &layer_scenes[k - FIG_SCENES];
         run *r = &runs[count];
         r->name = fig ? fig->name : layers->name;

@@ -70,7 +70,8 @@ static outcome run(ilsa_solver *solver, const ilsa_solver *from, const timetable
     ilsa_summary s;
     for (int k = 0; k < REPEATS && spent < 0.3; k++) {
         const ilsa_status status = speed_copy_state(solver, from);
-        const outcome o = status ? (outcome){.status = status} : run_once(solver, steps);
+        const outcome refused = {.status = status};
+        const outcome o = status ? refused : run_once(solver, steps);
         spent += o.seconds;
         best = o.seconds < best.seconds ? o : best;
     }

@@ -11,14 +11,16 @@ struct csv_table {
     char **field; /* (rows + 1) x columns, the header first */
 };
 
-static void *fail(const char *path, const char *what, const char *which) {
+_Noreturn static void fail(const char *path, const char *what, const char *which) {
     fprintf(stderr, "csv: %s: %s %s\n", path, what, which);
     exit(EXIT_FAILURE);
 }
 
 static void *allocate(size_t count, size_t size) {
     void *block = calloc(count > 0 ? count : 1, size);
-    return block ? block : fail("-", "out of", "memory");
+    if (!block)
+        fail("-", "out of", "memory");
+    return block;
 }
 
 static char *read_text(const char *path) {
@@ -66,7 +68,7 @@ static char *split_line(csv_table *table, char *line, char **field) {
 csv_table *csv_read(const char *path) {
     csv_table *table = allocate(1, sizeof *table);
     table->path = allocate(strlen(path) + 1, 1);
-    strcpy(table->path, path);
+    memcpy(table->path, path, strlen(path));
     table->text = read_text(path);
     table->columns = 1;
     for (const char *c = table->text; *c && *c != '\n'; c++)

@@ -52,8 +52,12 @@ char *program_read(const char *name) {
         return NULL;
     size_t size = 0, room = 1 << 16;
     char *text = malloc(room);
-    while (text && (size += fread(text + size, 1, room - size - 1, file)) == room - 1)
-        text = realloc(text, room *= 2);
+    while (text && (size += fread(text + size, 1, room - size - 1, file)) == room - 1) {
+        char *more = realloc(text, room *= 2);
+        if (!more)
+            free(text);
+        text = more;
+    }
     if (!text || ferror(file))
         fail(name);
     fclose(file);

@@ -16,7 +16,7 @@
 #define BETA_MT 2.5335594408265696
 
 /* What a function that fails must leave in its outputs. */
-#define UNTOUCHED -7.25
+#define UNTOUCHED (-7.25)
 
 static double power_of_10(double low, double high) {
     return pow(10.0, low + (high - low) * uniform());
