@@ -51,6 +51,7 @@ LIB     = $(if $(filter release,$(FLAVOUR)),lib,$(B)/lib)
 OPT_asan     = -O1 -g
 OPT_usan     = -O1 -g
 OPT_tsan     = -O2 -g
+OPT_valgrind = -O2 -g
 OPT_coverage = -O0 -g
 OPT         ?= $(or $(OPT_$(FLAVOUR)),-O3)
 
@@ -254,9 +255,9 @@ $(TEST_PROGRAMS): $(BIN)/%: $(B)/obj/tests/%.o $(call objects,$(TESTS_WITH) $(BE
 	$(call link,$(FAILING:%=-Wl$(comma)--wrap=%) $(call pc_libs,$(CMOCKA_PC)))
 
 # ---- Tests --------------------------------------------------------------------------------------
-.PHONY: check check-long asan usan tsan same-answer coverage
+.PHONY: check check-long asan usan tsan same-answer valgrind coverage
 T           =
-CANDIDATES := $(TESTS) $(if $(ILSA_LONG),$(TESTS_LONG))
+CANDIDATES := $(or $(SOME_TESTS),$(TESTS) $(if $(ILSA_LONG),$(TESTS_LONG)))
 CHECKED    := $(if $(T),$(foreach t,$(CANDIDATES),$(if $(findstring $(T),$(t)),$(t))),$(CANDIDATES))
 TEST_TIMEOUT = 3600
 
@@ -272,7 +273,7 @@ check: $(CHECKED:%=check/%) ## the tests; T=name for those whose name contains i
 .PHONY: $(CHECKED:%=check/%)
 $(CHECKED:%=check/%): check/%: $(BIN)/% $(PROGRAMS)
 	@mkdir -p $(B)/log
-	@start=$$(date +%s); $(TEST_ENV) timeout --foreground $(TEST_TIMEOUT) $< >$(B)/log/$*.log 2>&1; \
+	@start=$$(date +%s); $(TEST_ENV) timeout --foreground $(TEST_TIMEOUT) $(WITHIN) $< >$(B)/log/$*.log 2>&1; \
 	echo $$? $$(($$(date +%s) - start)) >$(B)/log/$*.status; \
 	echo "ran $<"
 
@@ -296,6 +297,16 @@ same-answer: $(BIN)/bench_answer ## one answer from gcc and clang, -O0 and -O3, 
 	    $(MAKE) --no-print-directory FLAVOUR=$$1 CC=$$2 OPT=$$3 build/$$1/bin/bench_answer; done
 	@sh tests/same_answer.sh $(BIN)/bench_answer \
 	    $(foreach a,$(ANSWERS),build/$(firstword $(subst :, ,$a))/bin/bench_answer)
+
+# The programs that take valgrind a minute or two at most; `make asan` runs all of them.
+VALGRIND_TESTS = anderson contour coupled elasticity flow front gmres grid handles multigrid tipcell
+VALGRIND = valgrind -q --error-exitcode=9 --leak-check=full \
+           --show-leak-kinds=definite,indirect,possible \
+           --errors-for-leak-kinds=definite,indirect,possible --suppressions=tests/valgrind.supp
+
+valgrind: ## the shorter tests under valgrind: no error, no leak
+	@$(MAKE) --no-print-directory FLAVOUR=valgrind WITHIN='$(VALGRIND)' ILSA_VALGRIND=1 \
+	    SOME_TESTS='$(VALGRIND_TESTS:%=test_%)' check
 
 coverage: ## the lines and branches of src/ that the tests reach
 	@rm -f build/coverage/obj/src/*.gcda

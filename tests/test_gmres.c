@@ -214,6 +214,8 @@ static void zero_right_hand_side(void **state) {
 static void any_scale_of_numbers(void **state) {
     (void)state;
     static const double scale[] = {1e-250, 1e-160, 1e160, 1e250};
+    if (getenv("ILSA_VALGRIND"))
+        skip(); /* where the norms of OpenBLAS are not of 80 bits */
     dense d = make_dense(20, 0.1, 3);
     gmres *g = make_gmres(20, 20);
     for (size_t s = 0; s < sizeof scale / sizeof *scale; s++) {
