@@ -308,11 +308,17 @@ valgrind: ## the shorter tests under valgrind: no error, no leak
 	@$(MAKE) --no-print-directory FLAVOUR=valgrind WITHIN='$(VALGRIND)' ILSA_VALGRIND=1 \
 	    SOME_TESTS='$(VALGRIND_TESTS:%=test_%)' check
 
-coverage: ## the lines and branches of src/ that the tests reach
+# What is not reached is of three kinds: answers to what the system has never refused (a mutex, a
+# signal mask), ends of iterations that have not failed to converge yet, and bounds that callers
+# keep already.
+coverage: ## the lines and branches of src/ that the tests reach, and the lines that none reaches
 	@rm -f build/coverage/obj/src/*.gcda
 	@$(MAKE) --no-print-directory FLAVOUR=coverage CC=gcc check
 	@for f in $(SOURCES); do $(GCOV) -b -n -o build/coverage/obj/$${f%.c}.o $$f; done 2>/dev/null \
 	    | awk -f tests/coverage.awk
+	@for f in $(SOURCES); do $(GCOV) -t -o build/coverage/obj/$${f%.c}.o $$f; done 2>/dev/null \
+	    | awk -F: '$$2 + 0 == 0 && $$3 == "Source" { file = $$4 } \
+	        $$1 ~ /#####/ && file ~ /^src/ { sub(/^[^:]*: */, ""); print file ":" $$0 }'
 
 # ---- Programs that measure and draw -------------------------------------------------------------
 .PHONY: benches bench accuracy speed extremes demo figures paper-figures

@@ -100,6 +100,13 @@ ILSA_API ilsa_solver_def ilsa_solver_def_default(void);
  * ILSA_ERR_NULL, ILSA_ERR_VALUE, ILSA_ERR_MEMORY (also where the system gives no more threads),
  * ILSA_ERR_MISMATCH (per-cell stress of another mesh, symmetry asked for that the scene has not,
  * ILSA_TIP_TOUGHNESS for a material that has none, a product that the library was built without).
+ *
+ * Memory that fails gives ILSA_ERR_MEMORY in every call, with two exceptions in the libraries
+ * below. FFTW ends the process when it cannot plan: what a plan needs is asked for first, but
+ * another thread may take it in between. OpenBLAS maps a buffer (128 MB in 0.3.21) in the first
+ * larger call of a thread while others are in one; refused, it tries for ever, since 0.3.30 it ends
+ * the process. Under a limit of the address space call it once (cblas_dgemm) before the limit is
+ * set.
  */
 ILSA_API ilsa_status ilsa_solver_create(const ilsa_solver_def *def, ilsa_solver **solver);
 
