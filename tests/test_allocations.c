@@ -51,7 +51,10 @@ static void none_in_a_grown_footprint(void **unused) {
         assert_int_equal(allocations_at_rest(&cases[k]), 0);
 }
 
-/* From 10 to over 20 cells: all that was asked for is a few times what is there at the end. */
+/*
+ * From 10 to over 20 cells: all that was asked for is a few times what is there at the end, half a
+ * megabyte for each larger transform included, which is only asked whether it is there.
+ */
 static void growth_is_amortised(void **unused) {
     (void)unused;
     for (int k = 0; k < CASES; k++) {
@@ -59,7 +62,7 @@ static void growth_is_amortised(void **unused) {
         const heap_counts before = heap;
         host_steps(solver, GROWING);
         assert_true(host_summary(solver).x_max > 1);
-        assert_true(heap.bytes - before.bytes <= 5 * (heap.live - before.live));
+        assert_true(heap.bytes - before.bytes <= 7 * (heap.live - before.live));
         ilsa_solver_destroy(&solver);
     }
 }
