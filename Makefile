@@ -4,8 +4,9 @@
 # What `make deps` installs on Debian 12: enough for demo, check, bench, figures, asan, usan.
 DEPS = gcc libc6-dev make pkg-config libopenblas-dev liblapacke-dev libfftw3-dev libinih-dev \
        libcmocka-dev gnuplot-nox
-# What `make deps-dev` adds: check-long (clang), tests/install (g++), format, lint and valgrind.
-DEPS_DEV = g++ clang clang-format clang-tidy cppcheck valgrind
+# What `make deps-dev` adds: check-long (clang), fuzz (its run-time library), tests/install (g++),
+# format, lint and valgrind.
+DEPS_DEV = g++ clang libclang-rt-14-dev clang-format clang-tidy cppcheck valgrind
 
 # ---- Jobs ---------------------------------------------------------------------------------------
 # As many jobs as cores, unless -j was given.
@@ -52,6 +53,7 @@ OPT_asan     = -O1 -g
 OPT_usan     = -O1 -g
 OPT_tsan     = -O2 -g
 OPT_valgrind = -O2 -g
+OPT_fuzz     = -O1 -g
 OPT_coverage = -O0 -g
 OPT         ?= $(or $(OPT_$(FLAVOUR)),-O3)
 
@@ -59,6 +61,8 @@ INSTRUMENT_asan     = -fsanitize=address -fno-omit-frame-pointer
 INSTRUMENT_usan     = -fsanitize=undefined,float-divide-by-zero -fno-sanitize-recover=all
 INSTRUMENT_tsan     = -fsanitize=thread
 INSTRUMENT_coverage = --coverage
+INSTRUMENT_fuzz     = -fsanitize=fuzzer-no-link,address,undefined,float-divide-by-zero \
+                      -fno-sanitize-recover=all -fno-omit-frame-pointer
 INSTRUMENT          = $(INSTRUMENT_$(FLAVOUR))
 
 # Instrumented code makes gcc's flow analysis warn of paths that do not exist.
@@ -153,6 +157,9 @@ RUN      := $(wildcard examples/ilsa_run/*.c)
 TESTS      := $(call names,$(wildcard tests/test_*.c))
 TESTS_LONG := $(call names,$(wildcard tests/long_*.c))
 TESTS_WITH := $(filter-out tests/test_% tests/long_%,$(wildcard tests/*.c))
+# tests/fuzz/fuzz_*.c are fuzzers, whose corpora are tests too; the one of scenes needs inih.
+FUZZERS    := $(filter-out $(if $(INIH_PC),,fuzz_scene),$(call names,$(wildcard tests/fuzz/fuzz_*.c)))
+FUZZ_WITH  := tests/fuzz/fuzz.c $(if $(filter fuzz,$(FLAVOUR)),,tests/fuzz/replay.c)
 BENCH_WITH := $(wildcard bench/common*.c)
 BENCH      := $(call names,$(filter-out $(BENCH_WITH),$(wildcard bench/*.c)))
 
@@ -217,6 +224,7 @@ $(B)/flags: FORCE
 
 $(B)/obj/src/%:      INCLUDE = $(BLAS_CFLAGS) $(FFT_CFLAGS)
 $(B)/obj/tests/%:    INCLUDE = -Isrc $(call pc_cflags,$(CMOCKA_PC))
+$(B)/obj/tests/fuzz/%: INCLUDE = -Isrc -Iexamples/ilsa_run
 $(B)/obj/bench/%:    INCLUDE = -Isrc $(BLAS_CFLAGS)
 $(B)/obj/examples/%: INCLUDE = $(call pc_cflags,$(INIH_PC))
 
@@ -254,11 +262,18 @@ TEST_PROGRAMS = $(TESTS:%=$(BIN)/%) $(TESTS_LONG:%=$(BIN)/%)
 $(TEST_PROGRAMS): $(BIN)/%: $(B)/obj/tests/%.o $(call objects,$(TESTS_WITH) $(BENCH_WITH)) $(LIB_A)
 	$(call link,$(FAILING:%=-Wl$(comma)--wrap=%) $(call pc_libs,$(CMOCKA_PC)))
 
+# With libFuzzer's main in the flavour fuzz, with one that feeds the corpus in all others.
+$(FUZZERS:%=$(BIN)/%): LDFLAGS += $(if $(filter fuzz,$(FLAVOUR)),-fsanitize=fuzzer)
+$(FUZZERS:%=$(BIN)/%): $(BIN)/%: $(B)/obj/tests/fuzz/%.o $(call objects,$(FUZZ_WITH)) $(LIB_A)
+	$(call link,$(if $(filter %/fuzz_scene,$@),$(call pc_libs,$(INIH_PC))))
+$(BIN)/fuzz_scene: $(call objects,$(filter %/scene.c %/draft.c %/keys.c %/ini_file.c,$(RUN)))
+
 # ---- Tests --------------------------------------------------------------------------------------
-.PHONY: check check-long asan usan tsan same-answer valgrind coverage
+.PHONY: check check-long asan usan tsan same-answer valgrind coverage fuzz
 T           =
-CANDIDATES := $(or $(SOME_TESTS),$(TESTS) $(if $(ILSA_LONG),$(TESTS_LONG)))
+CANDIDATES := $(or $(SOME_TESTS),$(TESTS) $(FUZZERS) $(if $(ILSA_LONG),$(TESTS_LONG)))
 CHECKED    := $(if $(T),$(foreach t,$(CANDIDATES),$(if $(findstring $(T),$(t)),$(t))),$(CANDIDATES))
+FUZZED     := $(filter $(FUZZERS),$(CHECKED))
 TEST_TIMEOUT = 3600
 
 # Tests find the programs of their own flavour in $ILSA_BIN.
@@ -307,6 +322,22 @@ VALGRIND = valgrind -q --error-exitcode=9 --leak-check=full \
 valgrind: ## the shorter tests under valgrind: no error, no leak
 	@$(MAKE) --no-print-directory FLAVOUR=valgrind WITHIN='$(VALGRIND)' ILSA_VALGRIND=1 \
 	    SOME_TESTS='$(VALGRIND_TESTS:%=test_%)' check
+
+# What a fuzzer finds of its own goes to build/fuzz/corpus, a fault to build/fuzz/fuzz_NAME-*.
+FUZZ_SECONDS = 600
+FUZZ_ENV     = UBSAN_OPTIONS=print_stacktrace=1
+FUZZ_FLAGS   = -timeout=30 -rss_limit_mb=2048 -print_final_stats=1
+FUZZ_FLAGS_fuzz_scene    = -max_len=2048
+FUZZ_FLAGS_fuzz_snapshot = -max_len=65536
+FUZZ_FLAGS_fuzz_api      = -max_len=256
+fuzz: ## every fuzzer for FUZZ_SECONDS (600), with clang, ASan and UBSan; T=name as above
+	@$(MAKE) --no-print-directory FLAVOUR=fuzz CC=clang run-fuzzers
+
+.PHONY: run-fuzzers
+run-fuzzers: $(FUZZED:%=$(BIN)/%)
+	@set -e; $(foreach f,$(FUZZED),echo "== $f"; mkdir -p $(B)/corpus/$(f:fuzz_%=%); \
+	    $(FUZZ_ENV) $(BIN)/$f -max_total_time=$(FUZZ_SECONDS) $(FUZZ_FLAGS) $(FUZZ_FLAGS_$f) \
+	        -artifact_prefix=$(B)/$f- $(B)/corpus/$(f:fuzz_%=%) tests/fuzz/corpus/$(f:fuzz_%=%);)
 
 # What is not reached is of three kinds: answers to what the system has never refused (a mutex, a
 # signal mask), ends of iterations that have not failed to converge yet, and bounds that callers

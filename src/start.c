@@ -88,8 +88,9 @@ static void balance(ilsa_solver *s, const radial_solution *solution) {
     double channel = 0, tip = 0, area = s->mesh.dx * s->mesh.dy;
     const box *b = &s->now.footprint;
     s->now.injected = solution->Q * solution->t;
-    s->now.fracture =
-        ilsai_has_leakoff(s) ? solution->efficiency * s->now.injected : s->now.injected;
+    /* What the solution leaves open of its volume must not become a negative leaked one. */
+    s->now.fracture = ilsai_has_leakoff(s) ? fmin(solution->efficiency, 1) * s->now.injected
+                                           : s->now.injected;
     s->now.leaked = s->now.injected - s->now.fracture;
     for (int pass = 0; pass < 2; pass++) {
         double factor = pass ? (s->now.fracture - tip) / channel : 1;

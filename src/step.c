@@ -480,8 +480,21 @@ static void unfold(ilsa_solver *s) {
     }
 }
 
+/* Cells that a pass has wetted and a later one has not keep no pressure. */
+static void clear_dry(ilsa_solver *s, const box *part) {
+    for (int j = part->y0; j <= part->y1; j++) {
+        for (int i = part->x0; i <= part->x1; i++) {
+            int cell = ilsai_grid_cell(&s->g, i, j);
+            if (s->trial.kind[cell] == ILSA_CELL_EMPTY) {
+                s->trial.pressure[cell] = 0;
+            }
+        }
+    }
+}
+
 static void accept(ilsa_solver *s, double dt, double change) {
     box part = ilsai_box_fold(&s->g, &s->region);
+    clear_dry(s, &part);
     for (int k = 0; k < s->seed_count; k++) {
         s->trial.speed[s->seeds[k].cell] = s->seeds[k].V;
     }

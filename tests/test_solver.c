@@ -727,6 +727,33 @@ static void readings_agree(void **state) {
     ilsa_solver_destroy(&solver);
 }
 
+/* Also where a pass of the front has wetted a cell that the next one has not. */
+static void pressure_is_zero_outside(void **state) {
+    (void)state;
+    host_scene scene = host_penny(1, 15, 1e-3);
+    scene.options.level = 1;
+    ilsa_solver *solver = host_started(&scene, 2e-3);
+    for (int step = 0; step < 8; step++) {
+        host_steps(solver, 1);
+        const double *pressure = host_pressure(solver);
+        const unsigned char *kind = host_kind(solver);
+        for (int k = 0; k < 15 * 15; k++)
+            assert_true(kind[k] != ILSA_CELL_EMPTY || pressure[k] == 0);
+    }
+    ilsa_solver_destroy(&solver);
+}
+
+/* With next to no leak-off, whatever the initial solution leaves open of its volume. */
+static void leaked_volume_is_not_negative(void **state) {
+    (void)state;
+    for (int k = -6; k < 2; k++) {
+        host_scene scene = host_penny(1e-40, 15, pow(10, k));
+        ilsa_solver *solver = host_started(&scene, 3 * scene.mesh.dx);
+        assert_true(host_summary(solver).volume_leaked >= 0);
+        ilsa_solver_destroy(&solver);
+    }
+}
+
 /* Those that were survey cells at the start of the step answer to (4.9); new ones do in the next.
  */
 static void survey_cells_follow_the_asymptote(void **state) {
@@ -979,6 +1006,8 @@ int main(void) {
         cmocka_unit_test(fields_refuse_bad_calls),
         cmocka_unit_test(numbers_refuse_bad_calls),
         cmocka_unit_test(readings_agree),
+        cmocka_unit_test(pressure_is_zero_outside),
+        cmocka_unit_test(leaked_volume_is_not_negative),
         cmocka_unit_test(survey_cells_follow_the_asymptote),
         cmocka_unit_test(the_model_says_what_is_on),
         cmocka_unit_test(linear_solvers_agree),

@@ -50,14 +50,18 @@ static void check_material(draft *d, const section *s) {
                     "must be given with E only; E_prime contains it");
 }
 
-static void take_material(scene *sc, const section *s) {
+/* Finite values of a rock may still be out of range once scaled. */
+static void take_material(draft *d, scene *sc, const section *s) {
     ilsa_rock rock = {.E = number_or(s, MATERIAL_E, 1),
                       .nu = number_or(s, MATERIAL_NU, 0),
                       .mu = number_or(s, MATERIAL_MU, 1),
                       .K_Ic = number_or(s, MATERIAL_K_IC, 0),
                       .C_L = number_or(s, MATERIAL_C_L, 0)};
     ilsa_material_def *m = &sc->material;
-    ilsa_material_def_from_rock(&rock, m);
+    if (ilsa_material_def_from_rock(&rock, m)) {
+        draft_error(d, s->line, s->name, NULL, NULL, "%s", ilsa_last_error(NULL));
+        return;
+    }
     m->E_prime = number_or(s, MATERIAL_E_PRIME, m->E_prime);
     m->mu_prime = number_or(s, MATERIAL_MU_PRIME, m->mu_prime);
     m->K_prime = number_or(s, MATERIAL_K_PRIME, m->K_prime);
@@ -268,7 +272,7 @@ static void build(draft *d, scene *sc) {
     check_injections(d, s[SECTION_MESH]);
     check_run(d, s[SECTION_RUN]);
     if (!d->error_count) {
-        take_material(sc, s[SECTION_MATERIAL]);
+        take_material(d, sc, s[SECTION_MATERIAL]);
         take_mesh(sc, s[SECTION_MESH]);
         take_stress(sc, s[SECTION_STRESS]);
         take_sources(d, sc);
