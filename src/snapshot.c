@@ -2,6 +2,7 @@
  */
 #include <ilsa/snapshot.h>
 
+#include "image.h"
 #include "state.h"
 #include <math.h>
 #include <stdint.h>
@@ -265,9 +266,12 @@ static ilsa_status read_sources(stream *io, const ilsa_solver *s, incoming *from
     }
     pass(io, from->sources, size);
     for (int k = 0; k < s->def.source_count && !io->failed; k++) {
-        const ilsa_source_def *own = &s->sources[k].def;
-        if (from->sources[k].x != own->x || from->sources[k].y != own->y) {
+        const ilsa_source_def *own = &s->sources[k].def, *seen = &from->sources[k];
+        if (seen->x != own->x || seen->y != own->y) {
             return ILSA_ERR_MISMATCH;
+        }
+        if (!(seen->rate >= 0 && isfinite(seen->rate))) {
+            return ILSA_ERR_SNAPSHOT;
         }
     }
     return ILSA_OK;
@@ -298,17 +302,13 @@ static ilsa_status read_tips(stream *io, const ilsa_solver *s, incoming *from) {
         tip_record *record = &from->tips.at[from->tips.count];
         memcpy(record, io->in + io->at, sizeof *record);
         io->at += sizeof *record;
-        if (record->cell < 0 || (size_t)record->cell >= ilsai_mesh_cells(&s->mesh) ||
-            record->history.count < 1 || record->history.count > TIPCELL_KNOTS) {
+        int after = from->tips.count > 0 ? record[-1].cell : -1;
+        if (record->cell <= after ||
+            !ilsai_image_record_is_sound(record, ilsai_mesh_cells(&s->mesh), from->now.time)) {
             return ILSA_ERR_SNAPSHOT;
         }
     }
     return ILSA_OK;
-}
-
-static int box_on_mesh(const ilsa_solver *s, const box *b) {
-    return b->x0 >= 0 && b->x0 <= b->x1 && b->x1 < s->mesh.nx && b->y0 >= 0 && b->y0 <= b->y1 &&
-           b->y1 < s->mesh.ny;
 }
 
 /* The material's, or where it has none one that can stand for it. */
@@ -328,7 +328,7 @@ static ilsa_status read_head(stream *io, const ilsa_solver *s, incoming *from) {
     }
     from->mesh = (ilsa_mesh_def){id.nx, id.ny, id.dx, id.dy};
     pass(io, &from->now, sizeof from->now);
-    if (io->failed || !from->now.started || !box_on_mesh(s, &from->now.footprint) ||
+    if (io->failed || !ilsai_image_state_is_sound(&from->now, &from->mesh) ||
         !is_viscosity(s, from->now.mu_prime)) {
         return ILSA_ERR_SNAPSHOT;
     }
@@ -337,11 +337,13 @@ static ilsa_status read_head(stream *io, const ilsa_solver *s, incoming *from) {
     return status ? status : read_tips(io, s, from);
 }
 
-/* The fields of the image must fill what is left of it exactly. */
-static int fields_fit(const ilsa_solver *s, const stream *io, const box *region) {
+/* The fields of the image must fill what is left of it exactly, and be those of a fracture. */
+static int fields_fit(const ilsa_solver *s, const stream *io, const box *region,
+                      const box *footprint) {
     stream count = {.at = io->at, .size = SIZE_MAX};
+    image_fields seen = {io->in + io->at, *region, *footprint, ilsai_has_leakoff(s)};
     pass_fields(&count, s, region, &s->field);
-    return count.at == io->size;
+    return count.at == io->size && ilsai_image_fields_are_sound(&seen);
 }
 
 /* An elasticity for another cell size, NULL if the size is the same. */
@@ -385,7 +387,7 @@ static ilsa_status finish(ilsa_solver *s, incoming *from, stream *io) {
     ilsa_solver like = *s;
     like.mesh = from->mesh;
     box region = ilsai_solver_region(&like, &from->now.footprint);
-    if (!fields_fit(&like, io, &region) ||
+    if (!fields_fit(&like, io, &region, &from->now.footprint) ||
         ilsai_stress_fill(from->stress, &from->mesh, s->gain) != ILSA_OK) {
         return ILSA_ERR_SNAPSHOT;
     }

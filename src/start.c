@@ -89,8 +89,8 @@ static void balance(ilsa_solver *s, const radial_solution *solution) {
     const box *b = &s->now.footprint;
     s->now.injected = solution->Q * solution->t;
     /* What the solution leaves open of its volume must not become a negative leaked one. */
-    s->now.fracture = ilsai_has_leakoff(s) ? fmin(solution->efficiency, 1) * s->now.injected
-                                           : s->now.injected;
+    s->now.fracture =
+        ilsai_has_leakoff(s) ? fmin(solution->efficiency, 1) * s->now.injected : s->now.injected;
     s->now.leaked = s->now.injected - s->now.fracture;
     for (int pass = 0; pass < 2; pass++) {
         double factor = pass ? (s->now.fracture - tip) / channel : 1;

@@ -553,6 +553,43 @@ static void unsound_images_do_no_harm(void **state) {
     ilsa_solver_destroy(&solver);
 }
 
+/* The place of a number in an image; the test fails if it is not there. */
+static size_t place_of(const host_image *image, double number) {
+    for (size_t at = HEADER; at + sizeof number <= image->size; at++)
+        if (memcmp(image->bytes + at, &number, sizeof number) == 0)
+            return at;
+    fail_msg("%g is not in the image", number);
+    return 0;
+}
+
+/* A width that is not a number is not taken for a state, nor a clock that has stopped. */
+static void impossible_states_are_refused(void **state) {
+    (void)state;
+    host_scene scene = small_scene();
+    ilsa_solver *solver = running(&scene, 2);
+    host_image before = host_save(solver), altered = host_save(solver);
+    ilsa_summary now = host_summary(solver);
+    const double *trigger = host_trigger(solver);
+    const double held[] = {now.width_source,    now.pressure_source, now.time,
+                           now.volume_fracture, now.volume_leaked,   trigger[33 * 61 + 30],
+                           scene.source[1].rate};
+    const double bad[] = {NAN, -INFINITY, -1e300, INFINITY};
+    for (size_t h = 0; h < sizeof held / sizeof *held; h++)
+        for (size_t b = 0; b < sizeof bad / sizeof *bad; b++) {
+            size_t at = place_of(&before, held[h]);
+            if ((h == 1 && isfinite(bad[b])) || (h == 5 && bad[b] > 0))
+                continue; /* a suction is a pressure; infinite: the front has not passed */
+            memcpy(altered.bytes + at, &bad[b], sizeof(double));
+            sign(&altered);
+            check_refused(solver, &before, altered.bytes, altered.size, ILSA_ERR_SNAPSHOT,
+                          "malformed");
+            memcpy(altered.bytes + at, &held[h], sizeof(double));
+        }
+    host_free(&before);
+    host_free(&altered);
+    ilsa_solver_destroy(&solver);
+}
+
 /* Saving needs no memory, so a host can do it when there is none. */
 static void save_needs_no_memory(void **state) {
     (void)state;
@@ -589,6 +626,7 @@ int main(void) {
         cmocka_unit_test(other_definitions_are_refused),
         cmocka_unit_test(refusal_without_a_fracture),
         cmocka_unit_test(unsound_images_do_no_harm),
+        cmocka_unit_test(impossible_states_are_refused),
         cmocka_unit_test(save_needs_no_memory),
     };
     return cmocka_run_group_tests_name("snapshot", tests, NULL, NULL);

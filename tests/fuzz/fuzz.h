@@ -12,8 +12,7 @@
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 /* Ends the program with a message where a promise of the code under test is not kept. */
-#define FUZZ_EXPECT(promise)                                                                       \
-    ((promise) ? (void)0 : fuzz_broken(__FILE__, __LINE__, #promise, NULL))
+#define FUZZ_EXPECT(promise) ((promise) ? (void)0 : fuzz_broken(__FILE__, __LINE__, #promise, NULL))
 void fuzz_broken(const char *file, int line, const char *promise, const char *note)
     __attribute__((noreturn));
 

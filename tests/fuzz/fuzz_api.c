@@ -63,6 +63,12 @@ static int same_image(const image *a, const image *b) {
     return a->size == b->size && (!a->bytes || memcmp(a->bytes, b->bytes, a->size) == 0);
 }
 
+static void check_same(const ilsa_solver *s, const image *expected) {
+    image now = take_image(s);
+    FUZZ_EXPECT(same_image(&now, expected));
+    free(now.bytes);
+}
+
 static int is_finite_and_positive(double x) {
     return x >= 0 && isfinite(x);
 }
@@ -140,8 +146,11 @@ static ilsa_status check_call(ilsa_status status, ilsa_solver *s, image *before,
     image after = take_image(s);
     if (status != ILSA_OK && !may_change)
         FUZZ_EXPECT(same_image(before, &after));
-    if (after.bytes)
+    if (after.bytes) {
         check_solver(s);
+        FUZZ_EXPECT(!ilsa_snapshot_restore(s, after.bytes, after.size));
+        check_same(s, &after);
+    }
     free(after.bytes);
     free(before->bytes);
     return status;
@@ -155,7 +164,8 @@ static double some_number(fuzz_input *in, double low, double high) {
 }
 
 static int some_count(fuzz_input *in, int low, int high) {
-    static const int odd[] = {0, -1, 1, 2, 1 << 16, 1 << 28, 1000000, 1000001, INT_MAX, INT_MIN + 1};
+    static const int odd[] = {0,       -1,      1,       2,       1 << 16,
+                              1 << 28, 1000000, 1000001, INT_MAX, INT_MIN + 1};
     int odd_one = fuzz_choice(in, 8) == 7;
     return odd_one ? odd[fuzz_choice(in, (int)(sizeof odd / sizeof *odd))]
                    : low + fuzz_choice(in, high - low + 1);
@@ -172,7 +182,7 @@ static int choose(fuzz_input *in) {
 static int cells_of(const ilsa_mesh *mesh) {
     ilsa_mesh_def def = {0, 0, 0, 0};
     return mesh && !ilsa_mesh_get_def(mesh, &def) && def.nx <= CELLS_MAX / def.ny ? def.nx * def.ny
-                                                                                    : 0;
+                                                                                  : 0;
 }
 
 static void make_mesh(world *w) {
@@ -541,9 +551,9 @@ static void begin(world *w) {
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     static void (*const calls[])(world *) = {
-        make_mesh,  make_material, make_stress, set_uniform, set_layers,  set_cells,   destroy,
-        make_solver, start,         set_rate,    set_stress,  step,        step,        step,
-        advance_one, advance_one,   advance,     coarsen,     read_solver, read_front,  save,
+        make_mesh,   make_material, make_stress, set_uniform, set_layers,  set_cells,  destroy,
+        make_solver, start,         set_rate,    set_stress,  step,        step,       step,
+        advance_one, advance_one,   advance,     coarsen,     read_solver, read_front, save,
         restore,     restore,       tips,        begin};
     world w = {.in = {data, size}};
     begin(&w);
