@@ -430,9 +430,8 @@ static void wait_for_step(const char *directory) {
         fail_msg("no step in %s after a minute", directory);
 }
 
-/* Runs a scene, sends it a signal after its first step; its exit status. */
-static int interrupted(const char *scene_path, int number, const char *directory) {
-    int status;
+/* Runs a scene until its first step is done. */
+static pid_t begun(const char *scene_path, const char *directory) {
     pid_t child = fork();
     if (child == 0) {
         if (!freopen(program_path("stderr.txt"), "w", stderr))
@@ -443,10 +442,21 @@ static int interrupted(const char *scene_path, int number, const char *directory
     }
     assert_true(child > 0);
     wait_for_step(directory);
-    kill(child, number);
+    return child;
+}
+
+static int exit_status(pid_t child) {
+    int status;
     assert_int_equal(waitpid(child, &status, 0), child);
     assert_true(WIFEXITED(status));
     return WEXITSTATUS(status);
+}
+
+/* Runs a scene, sends it a signal after its first step; its exit status. */
+static int interrupted(const char *scene_path, int number, const char *directory) {
+    pid_t child = begun(scene_path, directory);
+    kill(child, number);
+    return exit_status(child);
 }
 
 static void write_long_scene(void) {
@@ -525,6 +535,125 @@ static void disk_is_full(void **state) {
     full_disk("fields_001.vti");
     full_disk("front_002.csv");
     full_disk("summary.txt");
+}
+
+/* Runs the scene in other.ini within a shell command, %s of which is the program. */
+static int run_within(const char *format) {
+    char command[4600];
+    snprintf(command, sizeof command, format, program_ilsa_run());
+    return program_run(command, output, sizeof output);
+}
+
+static void assert_output(const char *part) {
+    if (!strstr(output, part))
+        fail_msg("\"%s\" is not in \"%s\"", part, output);
+}
+
+/* Files may take 2 kB: not the fields, and not all of the history, whose first rows stay whole. */
+static void space_runs_out(void **state) {
+    (void)state;
+    write_scene("t_end = 14\n", "t_end = 14\ndt_max = 0.1\n");
+    assert_int_equal(run_within("ulimit -f 4; '%s' other.ini --out small"), 1);
+    assert_output("ilsa-run: small/history.csv: File too large\n");
+    assert_output("ilsa-run: failed at t = ");
+    assert_output(": a result file could not be written; what was reached is in small\n");
+    char *text = program_read("small/history.csv");
+    assert_non_null(text);
+    assert_true(strlen(text) <= 2048 && text[strlen(text) - 1] == '\n');
+    free(text);
+    csv_table *h = csv_read(program_path("small/history.csv"));
+    assert_true(csv_rows(h) >= 2 && last(h, "wall_s") >= 0);
+    csv_free(h);
+    assert_int_equal(program_run("ls small", output, sizeof output), 0);
+    assert_string_equal(output, "history.csv\nsummary.txt\n");
+}
+
+/* Seen at the next step, not at the end of a night. */
+static void output_is_removed(const char *what, const char *directory) {
+    char command[64];
+    write_long_scene();
+    pid_t child = begun(program_path("other.ini"), directory);
+    snprintf(command, sizeof command, "rm -r %s", what);
+    assert_int_equal(program_run(command, output, sizeof output), 0);
+    assert_int_equal(exit_status(child), 1);
+    char *said = program_read("stderr.txt");
+    assert_non_null(said);
+    assert_non_null(strstr(said, "/history.csv: No such file or directory\n"));
+    assert_non_null(strstr(said, "ilsa-run: failed at t = "));
+    free(said);
+}
+
+static void history_is_removed(void **state) {
+    (void)state;
+    output_is_removed("gone/history.csv.part", "gone");
+    assert_int_equal(program_run("ls gone", output, sizeof output), 0);
+    assert_string_equal(output, "fields_001.vti\nfront_001.csv\nline_x_001.csv\nline_y_001.csv\n"
+                                "plot.gp\nrun.pvd\nsummary.txt\nsurvey_001.csv\n");
+}
+
+static void directory_is_removed(void **state) {
+    (void)state;
+    output_is_removed("away", "away");
+    assert_false(program_exists("away"));
+}
+
+/* The results are whole, the closing line is not, and that is told. */
+static void closing_line_is_lost(void **state) {
+    (void)state;
+    static const char *const done[] = {"ended                 done\n"};
+    program_write("other.ini", scene);
+    assert_int_equal(run_within("'%s' other.ini --out shut 2>said >&-; s=$?; cat said; exit $s"),
+                     1);
+    assert_string_equal(output, "ilsa-run: standard output: Bad file descriptor\n");
+    assert_says("shut/summary.txt", done, 1);
+    assert_int_equal(run_within("{ '%s' other.ini --out pipe 2>said; echo $? >>said; } | :; "
+                                "sleep 0.1; cat said"),
+                     0);
+    assert_string_equal(output, "ilsa-run: standard output: Broken pipe\n1\n");
+    assert_says("pipe/summary.txt", done, 1);
+    if (access("/dev/full", W_OK) != 0)
+        return;
+    assert_int_equal(run_within("'%s' other.ini --out full 2>said >/dev/full; s=$?; "
+                                "cat said; exit $s"),
+                     1);
+    assert_output("ilsa-run: standard output: No space left on device\n");
+    assert_int_equal(run_within("'%s' --help 2>said >/dev/full; s=$?; cat said; exit $s"), 1);
+    assert_output("ilsa-run: standard output: No space left on device\n");
+}
+
+/* No result file takes the place of a stream that the caller has closed. */
+static void closed_streams_are_not_written_to(void **state) {
+    (void)state;
+    static const char header[] = "scene                 other.ini\n";
+    program_write("other.ini", scene);
+    assert_int_equal(run_within("('%s' other.ini --out mute --quiet <&- >&- 2>&-)"), 0);
+    assert_int_equal(program_run("cmp out/front_002.csv mute/front_002.csv && "
+                                 "cmp out/fields_002.vti mute/fields_002.vti",
+                                 output, sizeof output),
+                     0);
+    write_scene("t_end = 14\noutput_times = 11, 14\n", "t_end = 600\n");
+    assert_int_equal(run_within("('%s' other.ini --out mute <&- >&- 2>&-)"), 1);
+    char *text = program_read("mute/summary.txt");
+    assert_non_null(text);
+    assert_int_equal(strncmp(text, header, strlen(header)), 0);
+    assert_null(strstr(text, "ilsa-run:"));
+    free(text);
+}
+
+/* In ways that hold for the super-user too. */
+static void directory_cannot_be_written(void **state) {
+    (void)state;
+    static const char start[] = "ilsa-run: /proc/history.csv: ";
+    program_write("other.ini", scene);
+    assert_int_equal(run_other("--out /proc"), 1);
+    assert_int_equal(strncmp(output, start, strlen(start)), 0);
+    assert_int_equal(run_other("--out /proc/none"), 1);
+    assert_string_equal(output, "ilsa-run: /proc/none: No such file or directory\n");
+    if (geteuid() == 0)
+        return;
+    assert_int_equal(program_run("mkdir -m 555 locked", output, sizeof output), 0);
+    assert_int_equal(run_other("--out locked"), 1);
+    assert_string_equal(output, "ilsa-run: locked/history.csv: Permission denied\n");
 }
 
 static void directory_cannot_be_made(void **state) {
@@ -620,7 +749,13 @@ int main(void) {
         cmocka_unit_test(terminated),
         cmocka_unit_test(shipped_scenes_start),
         cmocka_unit_test(disk_is_full),
+        cmocka_unit_test(space_runs_out),
+        cmocka_unit_test(history_is_removed),
+        cmocka_unit_test(directory_is_removed),
+        cmocka_unit_test(closing_line_is_lost),
+        cmocka_unit_test(closed_streams_are_not_written_to),
         cmocka_unit_test(directory_cannot_be_made),
+        cmocka_unit_test(directory_cannot_be_written),
         cmocka_unit_test(progress_on_a_terminal),
     };
     return cmocka_run_group_tests_name("run", tests, run_once, NULL);

@@ -1,6 +1,7 @@
 /* ilsa-run: runs a scene file and writes its results. */
 #include "keys.h"
 #include "model.h"
+#include "outfile.h"
 #include "run.h"
 #include "scene.h"
 
@@ -80,12 +81,13 @@ static char *default_directory(const char *scene_path) {
 int main(int argc, char **argv) {
     options o = {0};
     scene sc;
+    output_guard();
     if (!read_options(argc, argv, &o))
         return EXIT_BAD_SCENE;
     if (o.help) {
         printf("%s\nkeys of a scene:\n", usage);
         keys_print(stdout);
-        return EXIT_DONE;
+        return output_written() ? EXIT_DONE : EXIT_RUN_FAILED;
     }
     if (!scene_read(o.scene, &sc, stderr))
         return EXIT_BAD_SCENE;

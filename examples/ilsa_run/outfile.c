@@ -2,6 +2,7 @@
 
 #include <dirent.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -26,12 +27,18 @@ static void forget(outfile *file) {
     *file = (outfile){0};
 }
 
+/* Whether what has been flushed could be kept under its final name. */
+static int keep_flushed(const outfile *file) {
+    return file->flushed > 0 && truncate(file->part, file->flushed) == 0 &&
+           rename(file->part, file->path) == 0;
+}
+
 /* Called with errno set. */
 static int give_up(outfile *file) {
     int error = errno ? errno : EIO;
     if (file->stream)
         fclose(file->stream);
-    if (file->part)
+    if (file->part && !keep_flushed(file))
         unlink(file->part);
     fail(file->path ? file->path : "result file", error);
     forget(file);
@@ -45,13 +52,31 @@ int outfile_open(outfile *file, const char *directory, const char *name) {
     return file->stream ? 1 : give_up(file);
 }
 
-int outfile_flush(outfile *file) {
+/* All is on its way to the disk. */
+static int write_out(outfile *file) {
     errno = 0;
     return fflush(file->stream) == 0 && !ferror(file->stream) ? 1 : give_up(file);
 }
 
+/* A file that has been removed still takes what is written. */
+static int is_there(const outfile *file) {
+    struct stat info;
+    return fstat(fileno(file->stream), &info) == 0 && info.st_nlink > 0;
+}
+
+int outfile_flush(outfile *file) {
+    if (!write_out(file))
+        return 0;
+    if (!is_there(file)) {
+        errno = ENOENT;
+        return give_up(file);
+    }
+    file->flushed = ftell(file->stream);
+    return 1;
+}
+
 int outfile_close(outfile *file) {
-    if (!outfile_flush(file))
+    if (!write_out(file))
         return 0;
     FILE *stream = file->stream;
     file->stream = NULL;
@@ -59,6 +84,18 @@ int outfile_close(outfile *file) {
         return give_up(file);
     forget(file);
     return 1;
+}
+
+int output_written(void) {
+    errno = 0;
+    return fflush(stdout) == 0 && !ferror(stdout) ? 1
+                                                  : fail("standard output", errno ? errno : EIO);
+}
+
+void output_guard(void) {
+    for (int fd = 0; fd <= 2; fd++)
+        if (fcntl(fd, F_GETFD) == -1 && errno == EBADF)
+            open("/dev/null", fd == 0 ? O_WRONLY : O_RDONLY);
 }
 
 int directory_make(const char *path) {

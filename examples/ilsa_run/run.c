@@ -17,7 +17,10 @@ static void catch_signal(int number) {
     caught = number;
 }
 
-/* A second signal ends the program at once. A full file must be an error, not a signal. */
+/*
+ * A second signal ends the program at once. A full file, and output that nobody reads, must be
+ * errors, not signals.
+ */
 static void catch_signals(void) {
     struct sigaction action;
     memset(&action, 0, sizeof action);
@@ -26,6 +29,7 @@ static void catch_signals(void) {
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
     signal(SIGXFSZ, SIG_IGN);
+    signal(SIGPIPE, SIG_IGN);
 }
 
 typedef struct run {
@@ -90,9 +94,8 @@ static ilsa_status take_step(run *r) {
     return model_set_rates(r->sc, r->solver, r->t);
 }
 
-/* Says how the run ended, into text and, unless all is well and quiet, on the terminal. */
-static int conclude(const run *r, ilsa_status status, int quiet, char *text, size_t size) {
-    progress_end(&r->bar);
+/* How the run ended, in words. */
+static void put_ending(const run *r, ilsa_status status, char *text, size_t size) {
     if (r->writing_failed)
         snprintf(text, size, "failed at t = %.10g: a result file could not be written", r->t);
     else if (status)
@@ -105,14 +108,22 @@ static int conclude(const run *r, ilsa_status status, int quiet, char *text, siz
                  caught == SIGINT ? "Ctrl-C" : "SIGTERM", r->t, r->sc->t_end);
     else
         snprintf(text, size, "done");
-    if (r->writing_failed || status || r->t < r->sc->t_end)
-        fprintf(stderr, "ilsa-run: %s; what was reached is in %s\n", text, r->directory);
-    else if (!quiet)
-        printf("t = %.10g in %ld steps and %.1f s; results in %s\n", r->t, r->steps,
-               wall_seconds(r), r->directory);
-    if (r->writing_failed || status)
-        return EXIT_RUN_FAILED;
-    return r->t < r->sc->t_end ? 128 + caught : EXIT_DONE;
+}
+
+/* The closing line; 0 with a message if it cannot be written. */
+static int put_done(const run *r) {
+    printf("t = %.10g in %ld steps and %.1f s; results in %s\n", r->t, r->steps, wall_seconds(r),
+           r->directory);
+    return output_written();
+}
+
+/* Says how the run ended on the terminal, unless all is well and quiet; the exit status. */
+static int conclude(const run *r, ilsa_status status, int quiet, const char *ended) {
+    int done = !r->writing_failed && !status && r->t >= r->sc->t_end;
+    if (done)
+        return quiet || put_done(r) ? EXIT_DONE : EXIT_RUN_FAILED;
+    fprintf(stderr, "ilsa-run: %s; what was reached is in %s\n", ended, r->directory);
+    return r->writing_failed || status ? EXIT_RUN_FAILED : 128 + caught;
 }
 
 static int run_steps(run *r, int quiet) {
@@ -124,10 +135,13 @@ static int run_steps(run *r, int quiet) {
         save(r);
     if (r->history.stream && !outfile_close(&r->history))
         r->writing_failed = 1;
-    int exit_status = conclude(r, status, quiet, ended, sizeof ended);
-    if (!summary_write(r->directory, r->sc, r->solver, ended, wall_seconds(r)))
-        exit_status = EXIT_RUN_FAILED;
-    return exit_status;
+    progress_end(&r->bar);
+    put_ending(r, status, ended, sizeof ended);
+    if (!summary_write(r->directory, r->sc, r->solver, ended, wall_seconds(r))) {
+        r->writing_failed = 1;
+        put_ending(r, status, ended, sizeof ended);
+    }
+    return conclude(r, status, quiet, ended);
 }
 
 int run_scene(const scene *sc, const char *directory, int quiet) {
