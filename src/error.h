@@ -23,6 +23,9 @@ error_text *ilsai_thread_error(void);
 ilsa_status ilsai_check_finite(error_text *error, const char *name, double value);
 ilsa_status ilsai_check_positive(error_text *error, const char *name, double value);
 ilsa_status ilsai_check_not_negative(error_text *error, const char *name, double value);
+/* The same with "must be low .. high". */
+ilsa_status ilsai_check_range(error_text *error, const char *name, double value, double low,
+                              double high);
 
 /* ILSA_OK or ILSA_ERR_NULL with the message "name is NULL". */
 ilsa_status ilsai_check_pointer(error_text *error, const char *name, const void *pointer);

@@ -492,6 +492,9 @@ static int is_valid(const ilsa_material_def *scaled, double Q, double size) {
 static ilsa_status solve_at_time(const radial_grid *grid, radial_solution *solution) {
     const ilsa_material_def *scaled = &solution->scaled;
     double t = solution->t, length = cbrt(solution->Q * t);
+    if (!is_positive(scaled->E_prime * t) || !is_positive(scaled->E_prime * sqrt(length))) {
+        return ILSA_ERR_VALUE;
+    }
     radial_march march;
     memset(&march, 0, sizeof march);
     march.grid = grid;

@@ -14,11 +14,18 @@ ilsa_solver_def ilsa_solver_def_default(void) {
 }
 
 static ilsa_status check_number(const char *name, double value, double low, double high) {
-    if (!(value >= low && value <= high)) {
-        return ilsai_fail(ilsai_thread_error(), ILSA_ERR_VALUE, "%s = %g: must be %g .. %g", name,
-                          value, low, high);
-    }
-    return ILSA_OK;
+    return ilsai_check_range(ilsai_thread_error(), name, value, low, high);
+}
+
+/* What is not zero must leave room for products. */
+static ilsa_status check_magnitudes(const ilsa_mesh_def *mesh, const ilsa_material_def *material) {
+    const double most = ILSAI_MAGNITUDE_MOST, least = ILSAI_MAGNITUDE_LEAST;
+    ilsa_status status = check_number("dx", mesh->dx, least, most);
+    status = status ? status : check_number("dy", mesh->dy, least, most);
+    status = status ? status : check_number("E_prime", material->E_prime, least, most);
+    status = status ? status : check_number("mu_prime", material->mu_prime, least, most);
+    status = status ? status : check_number("K_prime", material->K_prime, 0, most);
+    return status ? status : check_number("C_prime", material->C_prime, 0, most);
 }
 
 static ilsa_status check_options(const ilsa_solver_def *def) {
@@ -48,8 +55,7 @@ static ilsa_status check_source(const ilsa_mesh_def *mesh, const ilsa_source_def
     double half_x = 0.5 * mesh->nx * mesh->dx, half_y = 0.5 * mesh->ny * mesh->dy;
     ilsa_status status = check_number("source x", source->x, -half_x, half_x);
     status = status ? status : check_number("source y", source->y, -half_y, half_y);
-    return status ? status
-                  : ilsai_check_not_negative(ilsai_thread_error(), "source rate", source->rate);
+    return status ? status : check_number("source rate", source->rate, 0, ILSAI_MAGNITUDE_MOST);
 }
 
 /* A front without toughness has no width under LEFM. */
@@ -67,6 +73,7 @@ static ilsa_status check_def(const ilsa_solver_def *def) {
     status = status ? status : ilsai_check_pointer(error, "material", def->material);
     status = status ? status : ilsai_check_pointer(error, "sources", def->sources);
     status = status ? status : check_options(def);
+    status = status ? status : check_magnitudes(&def->mesh->def, &def->material->def);
     status = status ? status : check_tip(def);
     for (int k = 0; status == ILSA_OK && k < def->source_count; k++) {
         status = check_source(&def->mesh->def, &def->sources[k]);
@@ -304,7 +311,7 @@ ilsa_status ilsa_set_rate(ilsa_solver *solver, int source, double rate) {
         return ilsai_fail(&solver->error, ILSA_ERR_VALUE, "source = %d: must be 0 .. %d", source,
                           solver->def.source_count - 1);
     }
-    ilsa_status status = ilsai_check_not_negative(&solver->error, "rate", rate);
+    ilsa_status status = ilsai_check_range(&solver->error, "rate", rate, 0, ILSAI_MAGNITUDE_MOST);
     if (status == ILSA_OK && solver->sources[source].def.rate != rate) {
         solver->sources[source].def.rate = rate;
         solver->now.dt_limit = INFINITY;

@@ -123,6 +123,10 @@ static int fits(const ilsa_solver *s, const penny *p) {
     return p->x - R > -reach_x && p->x + R < reach_x && p->y - R > -reach_y && p->y + R < reach_y;
 }
 
+static int moderate(double value) {
+    return value >= ILSAI_MAGNITUDE_LEAST && value <= ILSAI_MAGNITUDE_MOST;
+}
+
 ilsa_status ilsai_start_check(ilsa_solver *s, const radial_solution *solution) {
     penny p = {solution, s->sources[0].def.x, s->sources[0].def.y};
     double least = ILSAI_START_CELLS * fmax(s->mesh.dx, s->mesh.dy);
@@ -135,6 +139,13 @@ ilsa_status ilsai_start_check(ilsa_solver *s, const radial_solution *solution) {
         return ilsai_fail(&s->error, ILSA_MESH_EDGE,
                           "a fracture of radius %g at (%g, %g) does not fit in the mesh",
                           solution->R, p.x, p.y);
+    }
+    if (!moderate(solution->t) || !moderate(solution->V) ||
+        !moderate(ilsai_radial_width(solution, 0))) {
+        return ilsai_fail(&s->error, ILSA_ERR_VALUE,
+                          "a fracture of radius %g at time %g, width %g: must all be %g .. %g",
+                          solution->R, solution->t, ilsai_radial_width(solution, 0),
+                          ILSAI_MAGNITUDE_LEAST, ILSAI_MAGNITUDE_MOST);
     }
     double cells = 8 * (solution->R / s->mesh.dx + solution->R / s->mesh.dy) + 64;
     if (ilsai_has_leakoff(s) && ilsai_tip_records_reserve(&s->tips, (int)cells) != ILSA_OK) {

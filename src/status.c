@@ -73,6 +73,14 @@ ilsa_status ilsai_check_not_negative(error_text *error, const char *name, double
     return isfinite(value) && value >= 0 ? ILSA_OK : refuse(error, name, value, "finite and >= 0");
 }
 
+ilsa_status ilsai_check_range(error_text *error, const char *name, double value, double low,
+                              double high) {
+    return value >= low && value <= high
+               ? ILSA_OK
+               : ilsai_fail(error, ILSA_ERR_VALUE, "%s = %g: must be %g .. %g", name, value, low,
+                            high);
+}
+
 ilsa_status ilsai_check_pointer(error_text *error, const char *name, const void *pointer) {
     return pointer ? ILSA_OK : ilsai_fail(error, ILSA_ERR_NULL, "%s is NULL", name);
 }

@@ -1,6 +1,7 @@
 #include "stress.h"
 #include "error.h"
 #include "mesh.h"
+#include "tuning.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -218,6 +219,14 @@ static void fill_row(double *row, int count, double value) {
         row[i] = value;
 }
 
+/* The largest magnitude of the field. */
+static double largest(const ilsa_stress *stress) {
+    double most = fabs(stress->sigma);
+    for (size_t k = (size_t)stress->interfaces; k < value_count(stress); k++)
+        most = fmax(most, fabs(stress->values[k]));
+    return most;
+}
+
 ilsa_status ilsai_stress_fill(const ilsa_stress *stress, const ilsa_mesh_def *mesh, double *sigma) {
     if (stress->kind == STRESS_CELLS && !ilsai_mesh_same(&stress->mesh, mesh))
         return ilsai_fail(ilsai_thread_error(), ILSA_ERR_MISMATCH,
@@ -225,6 +234,10 @@ ilsa_status ilsai_stress_fill(const ilsa_stress *stress, const ilsa_mesh_def *me
                           "has %d x %d of %g x %g",
                           stress->mesh.nx, stress->mesh.ny, stress->mesh.dx, stress->mesh.dy,
                           mesh->nx, mesh->ny, mesh->dx, mesh->dy);
+    ilsa_status status = ilsai_check_range(ilsai_thread_error(), "largest stress", largest(stress),
+                                           0, ILSAI_MAGNITUDE_MOST);
+    if (status)
+        return status;
     if (stress->kind == STRESS_CELLS) {
         memcpy(sigma, stress->values, value_count(stress) * sizeof *sigma);
         return ILSA_OK;

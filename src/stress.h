@@ -27,7 +27,8 @@ int ilsai_stress_varies(const ilsa_stress *stress);
 /*
  * The field on a mesh, nx ny values. A cell cut by interfaces takes the mean over its height;
  * layers that mirror each other about y = 0 give values that do so bit for bit.
- * ILSA_ERR_MISMATCH if it is per cell of another mesh; sigma is then as it was.
+ * ILSA_ERR_MISMATCH if it is per cell of another mesh, ILSA_ERR_VALUE if a value is too large for
+ * a solver; sigma is then as it was.
  */
 ilsa_status ilsai_stress_fill(const ilsa_stress *stress, const ilsa_mesh_def *mesh, double *sigma);
 

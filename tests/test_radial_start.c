@@ -297,6 +297,9 @@ static void test_bad_input(void **state) {
     radial_solution solution;
     assert_int_equal(ilsai_radial_at_time(&extreme, 1.0, 1e300, &solution), ILSA_ERR_VALUE);
     assert_int_equal(ilsai_radial_at_radius(&extreme, 1.0, 1e300, &solution), ILSA_ERR_VALUE);
+    /* E' t is below the double range */
+    ilsa_material_def soft = {1e-200, 1e-200, 0.0, 0.0};
+    assert_int_equal(ilsai_radial_at_time(&soft, 1.0, 1e-200, &solution), ILSA_ERR_VALUE);
 }
 
 int main(void) {

@@ -413,6 +413,62 @@ static void start_survives_extreme_numbers(void **state) {
     ilsa_solver_destroy(&solver);
 }
 
+/* One number of a scene replaced. */
+static ilsa_status try_magnitude(int which, double value) {
+    host_scene scene = host_penny(1, 41, 0.1);
+    double *number[] = {&scene.mesh.dx,          &scene.material.E_prime, &scene.material.mu_prime,
+                        &scene.material.K_prime, &scene.material.C_prime, &scene.source[0].rate,
+                        &scene.sigma[0]};
+    *number[which] = value;
+    scene.mesh.dy = scene.mesh.dx;
+    ilsa_solver *solver;
+    ilsa_status status = host_try(&scene, &solver);
+    ilsa_solver_destroy(&solver);
+    return status;
+}
+
+/* Units in which volumes or squares of stresses overflow are refused, not computed with. */
+static void absurd_units_are_refused(void **state) {
+    (void)state;
+    static const char *const name[] = {"dx",      "E_prime",     "mu_prime",      "K_prime",
+                                       "C_prime", "source rate", "largest stress"};
+    for (int k = 0; k < 7; k++) {
+        assert_int_equal(try_magnitude(k, 1e60), ILSA_OK);
+        assert_int_equal(try_magnitude(k, 1.001e60), ILSA_ERR_VALUE);
+        check_message(ilsa_last_error(NULL), name[k]);
+        assert_int_equal(try_magnitude(k, 1e-60), ILSA_OK);
+        assert_int_equal(try_magnitude(k, 0.999e-60), k < 3 ? ILSA_ERR_VALUE : ILSA_OK);
+    }
+    host_scene scene = host_penny(1, 41, 1e30);
+    scene.material = (ilsa_material_def){1e-60, 1e60, 0, 0};
+    ilsa_solver *solver = host_solver(&scene);
+    assert_int_equal(ilsa_start_radial(solver, 7e30), ILSA_ERR_VALUE);
+    check_message(ilsa_last_error(solver), "must all be 1e-60 .. 1e+60");
+    assert_int_equal(ilsa_set_rate(solver, 0, 1e61), ILSA_ERR_VALUE);
+    ilsa_solver_destroy(&solver);
+}
+
+/* A stress that is too large is refused, and the one that was there stays. */
+static void absurd_stress_is_refused(void **state) {
+    (void)state;
+    host_scene scene = host_penny(1, 41, 0.1);
+    ilsa_solver *solver = host_started(&scene, 0.7);
+    host_image before = host_save(solver);
+    const ilsa_stress_def def = {1e61};
+    const double y = 0, sigma[] = {0, -1e61};
+    ilsa_stress *stress;
+    assert_int_equal(ilsa_stress_create(&def, &stress), ILSA_OK);
+    assert_int_equal(ilsa_set_stress(solver, stress), ILSA_ERR_VALUE);
+    check_message(ilsa_last_error(solver), "largest stress = 1e+61");
+    assert_int_equal(ilsa_stress_set_layers(stress, 1, &y, sigma), ILSA_OK);
+    assert_int_equal(ilsa_set_stress(solver, stress), ILSA_ERR_VALUE);
+    assert_true(host_is(solver, &before));
+    host_steps(solver, 1);
+    host_free(&before);
+    ilsa_stress_destroy(&stress);
+    ilsa_solver_destroy(&solver);
+}
+
 static void radius_and_time_of_a_start_agree(void **state) {
     (void)state;
     static const double phi[] = {0, 1e-4, 1};
@@ -995,6 +1051,8 @@ int main(void) {
         cmocka_unit_test(symmetry_is_lost_with_a_rate),
         cmocka_unit_test(start_refuses_bad_input),
         cmocka_unit_test(start_survives_extreme_numbers),
+        cmocka_unit_test(absurd_units_are_refused),
+        cmocka_unit_test(absurd_stress_is_refused),
         cmocka_unit_test(radius_and_time_of_a_start_agree),
         cmocka_unit_test(a_start_replaces_the_fracture),
         cmocka_unit_test(set_rate_refuses_bad_input),

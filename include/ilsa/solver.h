@@ -4,7 +4,9 @@
  * A solver copies the mesh, material, stress and sources that it is created with and owns all that
  * changes afterwards, so those handles may be destroyed or reused at once. Solvers are independent
  * of each other; one solver is used by one thread at a time, and has threads of its own only where
- * its definition asks for them. Units are any consistent set.
+ * its definition asks for them. Units are any consistent set in which cell sizes, material
+ * parameters, stresses, rates and times are at most 1e60, and at least 1e-60 where they may not be
+ * zero.
  */
 #ifndef ILSA_SOLVER_H
 #define ILSA_SOLVER_H
@@ -134,7 +136,7 @@ ILSA_API ilsa_status ilsa_start_radial_at(ilsa_solver *solver, double time);
 /* Sets the rate of source 0 .. source_count - 1 from now on, >= 0. ILSA_ERR_NULL, _VALUE. */
 ILSA_API ilsa_status ilsa_set_rate(ilsa_solver *solver, int source, double rate);
 
-/* Takes a copy of another stress field from now on. ILSA_ERR_NULL, _MISMATCH, _MEMORY. */
+/* Takes a copy of another stress field from now on. ILSA_ERR_NULL, _VALUE, _MISMATCH, _MEMORY. */
 ILSA_API ilsa_status ilsa_set_stress(ilsa_solver *solver, const ilsa_stress *stress);
 
 /* What a step, or an advance of many steps, did. */
