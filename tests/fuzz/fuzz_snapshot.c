@@ -125,7 +125,7 @@ static void check_widths(const ilsa_solver *solver) {
 
 /* What was taken for a state is one. */
 static void use(ilsa_solver *solver) {
-    const ilsa_front_point *front;
+    const ilsa_front_point *points;
     const ilsa_survey_point *survey;
     ilsa_summary summary;
     ilsa_report report;
@@ -133,7 +133,7 @@ static void use(ilsa_solver *solver) {
     double dt;
     check_widths(solver);
     FUZZ_EXPECT(!ilsa_get_summary(solver, &summary) && isfinite(summary.time));
-    FUZZ_EXPECT(!ilsa_get_front(solver, &front, &count));
+    FUZZ_EXPECT(!ilsa_get_front(solver, &points, &count));
     FUZZ_EXPECT(!ilsa_get_regime(solver, &survey, &count));
     FUZZ_EXPECT(!ilsa_suggest_dt(solver, &dt) && dt > 0);
     ilsa_status status = ilsa_step(solver, fmin(dt, 1e300), &report);
