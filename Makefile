@@ -434,7 +434,7 @@ endef
 # ---- Source care --------------------------------------------------------------------------------
 .PHONY: format format-check lint tidy cppcheck analyze
 C_FILES  = $(shell find include src tests bench examples -name '*.[ch]' -o -name '*.cpp')
-LINTED   = $(SOURCES) $(RUN) $(wildcard examples/*.c bench/*.c tests/*.c)
+LINTED   = $(SOURCES) $(RUN) $(wildcard examples/*.c bench/*.c tests/*.c tests/fuzz/*.c)
 
 format: ## clang-format over all sources, in place
 	clang-format -i $(C_FILES)
@@ -446,7 +446,7 @@ format-check: ## fails where clang-format would change something
 # bench/ and tests/), in .cppcheck, and below.
 lint: tidy cppcheck analyze ## clang-tidy, cppcheck and gcc -fanalyzer over all sources
 
-LINT_CFLAGS = $(STANDARD) -Iinclude -Isrc $(BLAS_CFLAGS) $(FFT_CFLAGS)
+LINT_CFLAGS = $(STANDARD) -Iinclude -Isrc -Iexamples/ilsa_run $(BLAS_CFLAGS) $(FFT_CFLAGS)
 
 tidy: $(LINTED:%=tidy/%) ## clang-tidy alone
 .PHONY: $(LINTED:%=tidy/%)

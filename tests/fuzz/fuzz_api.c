@@ -61,7 +61,9 @@ static image take_image(const ilsa_solver *s) {
 }
 
 static int same_image(const image *a, const image *b) {
-    return a->size == b->size && (!a->bytes || memcmp(a->bytes, b->bytes, a->size) == 0);
+    if (!a->bytes || !b->bytes)
+        return a->bytes == b->bytes;
+    return a->size == b->size && memcmp(a->bytes, b->bytes, a->size) == 0;
 }
 
 static void check_same(const ilsa_solver *s, const image *expected) {

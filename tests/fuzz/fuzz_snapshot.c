@@ -6,6 +6,7 @@
 #include "fuzz.h"
 
 /* For the header and the checksum, which are its own; the library's copy is then not linked. */
+/* NOLINTNEXTLINE(bugprone-suspicious-include) */
 #include "../../src/snapshot.c"
 
 enum { SIZE = 11, EDITS = 12, GROWTH = 64 };
@@ -58,6 +59,7 @@ static subject *subject_of(int layers) {
 }
 
 static size_t some_place(fuzz_input *in, size_t size) {
+    FUZZ_EXPECT(size > 0);
     return (fuzz_byte(in) * (size_t)256 + fuzz_byte(in)) % size;
 }
 
