@@ -1,14 +1,18 @@
 #include "image.h"
+#include "tuning.h"
 
 #include <math.h>
 #include <string.h>
+
+/* More than anything that a state can come to from the magnitudes that a solver takes. */
+static const double MOST = 1e200;
 
 static int is_flag(int value) {
     return value == 0 || value == 1;
 }
 
-static int is_finite_from(double value, double least) {
-    return value >= least && isfinite(value);
+static int is_within(double value, double least) {
+    return value >= least && value <= MOST;
 }
 
 static int is_inside(const box *b, const ilsa_mesh_def *mesh) {
@@ -17,11 +21,12 @@ static int is_inside(const box *b, const ilsa_mesh_def *mesh) {
 }
 
 int ilsai_image_state_is_sound(const state *now, const ilsa_mesh_def *mesh) {
-    return now->started == 1 && is_flag(now->mirror_x) && is_flag(now->mirror_y) && now->time > 0 &&
-           isfinite(now->time) && now->dt_limit > 0 && is_finite_from(now->injected, 0) &&
-           is_finite_from(now->leaked, 0) && now->fracture > 0 && isfinite(now->fracture) &&
-           is_finite_from(now->front_change, 0) && is_finite_from(now->front_advance, 0) &&
-           is_finite_from(now->dt, 0) && now->unknowns >= 0 && is_inside(&now->footprint, mesh);
+    return now->started == 1 && is_flag(now->mirror_x) && is_flag(now->mirror_y) &&
+           is_within(now->time, ILSAI_MAGNITUDE_LEAST) && now->dt_limit > 0 &&
+           is_within(now->injected, 0) && is_within(now->leaked, 0) && now->fracture > 0 &&
+           is_within(now->fracture, 0) && is_within(now->front_change, 0) &&
+           is_within(now->front_advance, 0) && is_within(now->dt, 0) && now->unknowns >= 0 &&
+           is_inside(&now->footprint, mesh);
 }
 
 int ilsai_image_record_is_sound(const tip_record *record, size_t cells, double now) {
@@ -30,7 +35,7 @@ int ilsai_image_record_is_sound(const tip_record *record, size_t cells, double n
                 h->count <= TIPCELL_KNOTS;
     for (int k = 0; sound && k < h->count; k++) {
         double t = k > 0 ? h->t[k - 1] : 0, ell = k > 0 ? h->ell[k - 1] : 0;
-        sound = h->t[k] >= t && h->t[k] <= now && is_finite_from(h->ell[k], ell);
+        sound = h->t[k] >= t && h->t[k] <= now && is_within(h->ell[k], ell);
     }
     return sound;
 }
@@ -56,7 +61,7 @@ static int kind_of(const image_fields *f, size_t k) {
 static int wet_is_sound(const image_fields *f, size_t k) {
     double level = number(f, LEVEL, k);
     int kind = kind_of(f, k);
-    return (kind == ILSA_CELL_TIP || number(f, WIDTH, k) > 0) && isfinite(level) &&
+    return (kind == ILSA_CELL_TIP || number(f, WIDTH, k) > 0) && is_within(level, -MOST) &&
            (kind != ILSA_CELL_SURVEY || level < 0);
 }
 
@@ -65,14 +70,14 @@ static int dry_is_sound(const image_fields *f, size_t k) {
 }
 
 static int leak_is_sound(const image_fields *f, size_t k) {
-    return number(f, TRIGGER, k) >= 0 && is_finite_from(number(f, SPREAD, k), 0) &&
-           is_finite_from(number(f, LEAKED, k), 0);
+    return number(f, TRIGGER, k) >= 0 && is_within(number(f, SPREAD, k), 0) &&
+           is_within(number(f, LEAKED, k), 0);
 }
 
 static int cell_is_sound(const image_fields *f, size_t k) {
     int kind = kind_of(f, k);
-    return kind <= ILSA_CELL_CHANNEL && is_finite_from(number(f, WIDTH, k), 0) &&
-           isfinite(number(f, PRESSURE, k)) && is_finite_from(number(f, SPEED, k), 0) &&
+    return kind <= ILSA_CELL_CHANNEL && is_within(number(f, WIDTH, k), 0) &&
+           is_within(fabs(number(f, PRESSURE, k)), 0) && is_within(number(f, SPEED, k), 0) &&
            (kind == ILSA_CELL_EMPTY ? dry_is_sound(f, k) : wet_is_sound(f, k)) &&
            (!f->leak_off || leak_is_sound(f, k));
 }

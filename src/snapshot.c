@@ -4,6 +4,7 @@
 
 #include "image.h"
 #include "state.h"
+#include "tuning.h"
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -270,7 +271,7 @@ static ilsa_status read_sources(stream *io, const ilsa_solver *s, incoming *from
         if (seen->x != own->x || seen->y != own->y) {
             return ILSA_ERR_MISMATCH;
         }
-        if (!(seen->rate >= 0 && isfinite(seen->rate))) {
+        if (!(seen->rate >= 0 && seen->rate <= ILSAI_MAGNITUDE_MOST)) {
             return ILSA_ERR_SNAPSHOT;
         }
     }
