@@ -140,8 +140,8 @@
 
 /* Smallest part of the tolerance of the front that a step which hardly moves it asks for. */
 #define ILSAI_TOLERANCE_PART 1e-4
-/* Magnitude: the most that a length, a time, a stress, a rate may be, and the least where it may not
- * be zero. Cubes of lengths times what else there is stay in the double range. */
+/* Magnitude: the most that a length, a time, a stress, a rate may be, and the least where it may
+ * not be zero. Cubes of lengths times what else there is stay in the double range. */
 #define ILSAI_MAGNITUDE_MOST  1e60
 #define ILSAI_MAGNITUDE_LEAST 1e-60
 
