@@ -62,7 +62,7 @@ static int wet_is_sound(const image_fields *f, size_t k) {
     double level = number(f, LEVEL, k);
     int kind = kind_of(f, k);
     return (kind == ILSA_CELL_TIP || number(f, WIDTH, k) > 0) && is_within(level, -MOST) &&
-           (kind != ILSA_CELL_SURVEY || level < 0);
+           (kind == ILSA_CELL_TIP || level < 0);
 }
 
 static int dry_is_sound(const image_fields *f, size_t k) {

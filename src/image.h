@@ -21,9 +21,9 @@ typedef struct image_fields {
 } image_fields;
 
 /*
- * No cell is wet outside the footprint; channel cells have a width, dry ones none and no pressure,
- * and their centres lie beyond the front; survey cells, behind it, are those at the rim of the
- * channel, and there is one.
+ * No cell is wet outside the footprint; channel cells have a width, dry ones none and no pressure;
+ * the centres of dry cells lie beyond the front, those of channel cells behind it; survey cells are
+ * those at the rim of the channel, and there is one.
  */
 int ilsai_image_fields_are_sound(const image_fields *f);
 
