@@ -175,6 +175,9 @@ void extreme_go(extreme_trial *t, double time) {
         keep(t, &t->image, &t->image_size);
         t->status = ilsa_advance_one(t->solver, time, &report);
         check_step(t, &report);
+        if (t->status == ILSA_CLOSED)
+            t->status =
+                ilsa_wait(t->solver, time); /* an end as good as any; refused if it is none */
     }
     if (t->status == ILSA_MESH_EDGE && t->scene.to_edge)
         return;

@@ -26,6 +26,7 @@ int ilsai_image_state_is_sound(const state *now, const ilsa_mesh_def *mesh) {
            is_within(now->injected, 0) && is_within(now->leaked, 0) && now->fracture > 0 &&
            is_within(now->fracture, 0) && is_within(now->front_change, 0) &&
            is_within(now->front_advance, 0) && is_within(now->dt, 0) && now->unknowns >= 0 &&
+           isfinite(now->leak_rate) && now->width_most > 0 && is_within(now->width_most, 0) &&
            is_inside(&now->footprint, mesh);
 }
 

@@ -23,7 +23,9 @@ static ilsa_status check_magnitudes(const ilsa_mesh_def *mesh, const ilsa_materi
     ilsa_status status = check_number("dx", mesh->dx, least, most);
     status = status ? status : check_number("dy", mesh->dy, least, most);
     status = status ? status : check_number("E_prime", material->E_prime, least, most);
-    status = status ? status : check_number("mu_prime", material->mu_prime, least, most);
+    if (material->mu_prime != 0) {
+        status = status ? status : check_number("mu_prime", material->mu_prime, least, most);
+    }
     status = status ? status : check_number("K_prime", material->K_prime, 0, most);
     return status ? status : check_number("C_prime", material->C_prime, 0, most);
 }

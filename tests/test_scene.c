@@ -109,7 +109,7 @@ static const bad_scene scenes[] = {
     {"material C_L: with C_prime", "C_L = 1e-5\n", "C_L = 1e-5\nC_prime = 2e-5\n",
      "7: [material] C_prime = 2e-5: C_L is given too, on line 6; must be either C_L or C_prime"},
     {"material mu: beyond the double range when scaled", "mu = 0.1\n", "mu = 1e308\n",
-     "1: [material]: mu_prime = inf: must be finite and > 0"},
+     "1: [material]: mu_prime = inf: must be finite and >= 0"},
     GREATER_ZERO("material", "E_prime", "2", "E = 9.5e9\n"),
     GREATER_ZERO("material", "mu_prime", "4", "mu = 0.1\n"),
     NOT_NEGATIVE("material", "K_prime", "5", "K_Ic = 1e6\n"),
