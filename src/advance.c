@@ -20,11 +20,19 @@ static double front_rate(const ilsa_solver *s) {
     return largest;
 }
 
-/* The time in which the fracture loses a part of its volume, or gains as much as it has. */
+/*
+ * The time in which a fracture that empties loses a part of its volume, or one that opens again
+ * gains as much as it has. Else volume is no measure: what is injected and what leaks may both be
+ * many times of it.
+ */
 static double until_changed(const ilsa_solver *s) {
-    double rate = ilsai_injection_rate(s) - s->now.leak_rate;
-    double part = rate < 0 ? ILSAI_DT_LOSS : 1;
-    return rate != 0 ? part * s->now.fracture / fabs(rate) : INFINITY;
+    double injected = ilsai_injection_rate(s), leaked = s->now.leak_rate;
+    int empties = injected < ILSAI_EMPTIES * leaked;
+    if (!empties && ilsai_closed_cells(s) == 0) {
+        return INFINITY;
+    }
+    double rate = fabs(injected - leaked), part = empties ? ILSAI_DT_LOSS : 1;
+    return rate > 0 ? part * s->now.fracture / rate : INFINITY;
 }
 
 static double suggestion(const ilsa_solver *s) {
@@ -74,6 +82,16 @@ static const char *reason(ilsa_status status) {
                                            : NULL;
 }
 
+/* Refused attempts since the clock was at nine tenths of what it is. */
+static void count_refusals(ilsa_solver *s, ilsa_status status) {
+    double now = s->now.time;
+    if (now < s->crawl_time || now > ILSAI_CRAWL_TIME * s->crawl_time) {
+        s->crawl_time = now;
+        s->crawl_refused = 0;
+    }
+    s->crawl_refused += status != ILSA_OK;
+}
+
 /* One attempt, with its message and counters. */
 static ilsa_status attempt(ilsa_solver *s, double dt, ilsa_report *report) {
     double start = ilsai_clock();
@@ -82,6 +100,7 @@ static ilsa_status attempt(ilsa_solver *s, double dt, ilsa_report *report) {
     report->steps = status == ILSA_OK;
     report->rejected = status != ILSA_OK;
     s->now.dt_limit *= status == ILSA_OK ? ILSAI_DT_GROWTH : 1;
+    count_refusals(s, status);
     if (reason(status)) {
         ilsai_fail(&s->error, status, "step of dt = %g at time %g: %s", dt, s->now.time,
                    reason(status));
@@ -139,9 +158,11 @@ static ilsa_status step_until_accepted(ilsa_solver *s, double t_limit, ilsa_repo
             return ILSA_OK;
         }
         s->now.dt_limit = ILSAI_DT_CUT * dt;
-        int stalled = s->now.dt_limit < ILSAI_DT_SMALLEST * s->now.time;
+        int stalled = s->now.dt_limit < ILSAI_DT_SMALLEST * s->now.time ||
+                      s->crawl_refused >= ILSAI_CRAWL_REFUSED;
         if (!try_again(status) || stalled) {
             s->now.dt_limit = limit;
+            s->crawl_refused = 0;
             return try_again(status) ? ILSA_STALLED : status;
         }
     }

@@ -124,18 +124,26 @@ double ilsai_closure_width(const ilsa_solver *s) {
     return s->def.closure_width > 0 ? s->def.closure_width : ILSAI_CLOSURE * s->now.width_most;
 }
 
-int ilsai_open_cells(const ilsa_solver *s) {
+static int count_channel(const ilsa_solver *s, int closed) {
     const box *b = &s->now.footprint;
     double closure = ilsai_closure_width(s);
-    int open = 0;
+    int count = 0;
     for (int j = b->y0; j <= b->y1; j++) {
         for (int i = b->x0; i <= b->x1; i++) {
             int cell = j * s->mesh.nx + i;
-            open += s->field.kind[cell] >= ILSA_CELL_SURVEY &&
-                    !ilsai_contact_closed(s->field.width[cell], closure);
+            count += s->field.kind[cell] >= ILSA_CELL_SURVEY &&
+                     ilsai_contact_closed(s->field.width[cell], closure) == closed;
         }
     }
-    return open;
+    return count;
+}
+
+int ilsai_open_cells(const ilsa_solver *s) {
+    return count_channel(s, 0);
+}
+
+int ilsai_closed_cells(const ilsa_solver *s) {
+    return count_channel(s, 1);
 }
 
 double ilsai_solver_band(const ilsa_solver *s) {

@@ -79,6 +79,8 @@ struct ilsa_solver {
     /* work done with this handle, accepted or not; no part of the state */
     ilsa_report total;
     ilsa_profile profile;
+    double crawl_time; /* since when refusals are counted */
+    long crawl_refused;
 
     /* one step at work */
     grid g;
@@ -153,9 +155,10 @@ box ilsai_solver_region(const ilsa_solver *s, const box *footprint);
 /* Volume per time injected by all sources. */
 double ilsai_injection_rate(const ilsa_solver *s);
 
-/* Width of a closed cell, see contact.h, and the channel cells that are wider. */
+/* Width of a closed cell, see contact.h, and the channel cells that are wider, or not. */
 double ilsai_closure_width(const ilsa_solver *s);
 int ilsai_open_cells(const ilsa_solver *s);
+int ilsai_closed_cells(const ilsa_solver *s);
 
 /* Distance beyond the front up to which levels are kept. */
 double ilsai_solver_band(const ilsa_solver *s);

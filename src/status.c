@@ -16,7 +16,7 @@ const char *ilsa_status_text(ilsa_status status) {
     case ILSA_STEP_TOO_LARGE:
         return "the front would pass more cells than one step may: try a smaller one";
     case ILSA_STALLED:
-        return "the step fell below the smallest one without being accepted";
+        return "no progress: steps were refused down to the smallest, or again and again";
     case ILSA_CLOSED:
         return "every cell is closed and nothing is injected";
     case ILSA_NO_SPACE:

@@ -121,6 +121,7 @@ static void extend(const ilsa_solver *s, int i, int j, ilsa_summary *out) {
 
 static void set_cells(const ilsa_solver *s, ilsa_summary *out) {
     const box *b = &s->now.footprint;
+    out->closed_cells = ilsai_closed_cells(s);
     out->closure_width = ilsai_closure_width(s);
     out->extent_x_min = out->extent_y_min = INFINITY;
     out->extent_x_max = out->extent_y_max = -INFINITY;
@@ -129,8 +130,6 @@ static void set_cells(const ilsa_solver *s, ilsa_summary *out) {
             int cell = j * s->mesh.nx + i, kind = s->field.kind[cell];
             out->cells += kind != ILSA_CELL_EMPTY;
             out->tip_cells += kind == ILSA_CELL_TIP;
-            out->closed_cells += kind >= ILSA_CELL_SURVEY &&
-                                 ilsai_contact_closed(s->field.width[cell], out->closure_width);
             if (kind == ILSA_CELL_SURVEY) {
                 out->survey_cells++;
                 out->arrested_cells += !(s->field.speed[cell] > 0);

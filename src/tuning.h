@@ -79,10 +79,17 @@
 #define ILSAI_DT_CUT    0.5
 /* Time: longest step where the front stands still, as a part of the time so far. */
 #define ILSAI_DT_RESTING 0.1
-/* Time: part of its volume that a fracture may lose in a step. */
+/* Time: a fracture empties when less than this part of what leaks is injected; part of its volume
+ * that it may lose in a step. */
+#define ILSAI_EMPTIES 0.5
 #define ILSAI_DT_LOSS 0.1
 /* Time: smallest step relative to the time so far before an advance gives up. */
 #define ILSAI_DT_SMALLEST 1e-12
+
+/* Time: refused steps, while the time grows by this factor, after which an advance gives up: it
+ * would take for ever. */
+#define ILSAI_CRAWL_REFUSED 400
+#define ILSAI_CRAWL_TIME    1.1
 
 /* Source: closer to a cell edge than this, in cells, it feeds the cells on both sides. */
 #define ILSAI_EDGE_CELLS 1e-9
