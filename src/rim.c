@@ -463,7 +463,7 @@ static tip_response response_in(const ilsa_solver *s, const front_cell *c, doubl
         const front_seed *seed = &s->seeds[c->from.seed[p]];
         if (c->V > 0) {
             answer_to_seed(&r, seed, &moving, c->from.weight[p]);
-        } else if (s->trial.kind[c->cell] == ILSA_CELL_TIP) {
+        } else if (s->trial.kind[c->cell] == ILSA_CELL_TIP && c->K_num > 0) {
             double part = ilsai_survey_smooth_slope(s, seed);
             answer_to(&r, seed->cell, &resting, part * sqrt(seed->s) / c->K_num);
         }

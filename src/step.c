@@ -245,9 +245,10 @@ static void move_front(ilsa_solver *s, int pass) {
     }
 }
 
-/* Per area in the step. */
+/* Per area in the step: nothing comes back, whatever a late solve has let go, see contact.h. */
 static double leaked_from(const ilsa_solver *s, int cell) {
-    return s->leak[cell] - (s->relief ? s->relief[cell] : 0);
+    double relief = s->relief ? s->relief[cell] : 0;
+    return s->leak[cell] - fmax(fmin(relief, s->leak[cell]), 0);
 }
 
 typedef struct volumes {
