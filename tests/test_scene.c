@@ -93,9 +93,9 @@ static const bad_scene scenes[] = {
     {"material nu: missing", "nu = 0.2\n", "", "1: [material] nu: missing; must be in 0 .. 0.5"},
     {"material nu: with E_prime", "E = 9.5e9\n", "E_prime = 1e10\n",
      "3: [material] nu = 0.2: must be given with E only; E_prime contains it"},
-    GREATER_ZERO("material", "mu", "4", "mu = 0.1\n"),
+    NOT_NEGATIVE("material", "mu", "4", "mu = 0.1\n"),
     {"material mu: missing", "mu = 0.1\n", "",
-     "1: [material]: missing; must have mu (> 0) or mu_prime (> 0)"},
+     "1: [material]: missing; must have mu (>= 0) or mu_prime (>= 0)"},
     {"material mu: with mu_prime", "mu = 0.1\n", "mu_prime = 1.2\nmu = 0.1\n",
      "5: [material] mu = 0.1: mu_prime is given too, on line 4; must be either mu or mu_prime"},
     NOT_NEGATIVE("material", "K_Ic", "5", "K_Ic = 1e6\n"),
@@ -111,7 +111,7 @@ static const bad_scene scenes[] = {
     {"material mu: beyond the double range when scaled", "mu = 0.1\n", "mu = 1e308\n",
      "1: [material]: mu_prime = inf: must be finite and >= 0"},
     GREATER_ZERO("material", "E_prime", "2", "E = 9.5e9\n"),
-    GREATER_ZERO("material", "mu_prime", "4", "mu = 0.1\n"),
+    NOT_NEGATIVE("material", "mu_prime", "4", "mu = 0.1\n"),
     NOT_NEGATIVE("material", "K_prime", "5", "K_Ic = 1e6\n"),
     NOT_NEGATIVE("material", "C_prime", "6", "C_L = 1e-5\n"),
     {"material: unknown key", "mu = 0.1\n", "Mu = 0.1\n",
@@ -297,13 +297,13 @@ static const bad_scene scenes[] = {
      "4: neither [section] nor key = value"},
     {"heading not closed", "[run]\n", "[run\n", "21: a heading must be [section]"},
     {"scalar on two lines", "mu = 0.1\n", "mu = 0.1\n  0.2\n",
-     "4: [material] mu = 0.1 0.2: not a number; must be > 0"},
+     "4: [material] mu = 0.1 0.2: not a number; must be >= 0"},
     {"line number after a continued list", "sigma = 7e6\n[injection]\nrate = 0.01\n",
      "sigma = 7e6,\n  8e6,\n  9e6\ninterfaces = -1, 1\n[injection]\nrate = -1\n",
      "19: [injection] rate = -1: must be >= 0"},
-    {"two errors, two lines", "nu = 0.2\nmu = 0.1\n", "nu = 2\nmu = 0\n",
+    {"two errors, two lines", "nu = 0.2\nmu = 0.1\n", "nu = 2\nmu = -1\n",
      "3: [material] nu = 2: must be in 0 .. 0.5\n"
-     "scene.ini:4: [material] mu = 0: must be > 0"},
+     "scene.ini:4: [material] mu = -1: must be >= 0"},
 };
 
 static void write_scene(const bad_scene *scene) {
