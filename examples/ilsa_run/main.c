@@ -9,6 +9,16 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* OpenBLAS has it; where another BLAS is linked there is nothing to set. */
+#pragma weak openblas_set_num_threads
+extern void openblas_set_num_threads(int threads);
+
+/* Matrices of a step are small: threads of BLAS, unless asked for, would wait for each other. */
+static void keep_blas_alone(void) {
+    if (!getenv("OPENBLAS_NUM_THREADS") && openblas_set_num_threads)
+        openblas_set_num_threads(1);
+}
+
 static const char usage[] =
     "usage: ilsa-run SCENE.ini [--out DIR] [--level N] [--threads N] [--quiet]\n"
     "  --out DIR    where the results go; SCENE.out without it. Earlier results are replaced.\n"
@@ -82,6 +92,7 @@ int main(int argc, char **argv) {
     options o = {0};
     scene sc;
     output_guard();
+    keep_blas_alone();
     if (!read_options(argc, argv, &o))
         return EXIT_BAD_SCENE;
     if (o.help) {
