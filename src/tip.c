@@ -27,10 +27,10 @@
 
 /*
  * Newton in ln x ends where step^2 times the step before (1 for the first), the error to come, is
- * below this; and in a row of widths, each begun from the last, where 1e-10 of a width will do.
+ * below this; and in a row of widths, each begun from the last, where 1e-12 of a width will do.
  */
 #define LAST_STEP   1e-14
-#define LAST_IN_ROW 1e-10
+#define LAST_IN_ROW 1e-12
 #define NEWTON_MOST 20
 #define ROUNDING    1e-14
 
@@ -403,14 +403,15 @@ static bool is_plain_row(const tip_law *law, double V, int count, const double *
     return plain;
 }
 
-/* One point of a row of any arguments. */
-static tip_point point_alone(const tip_law *law, double V, double s) {
+/* One point of a row of any arguments; next as in point_at. */
+static tip_point point_alone(const tip_law *law, double V, double s, double *next) {
     const double w = ilsai_tip_width(law, V, s);
+    *next = 1.0;
     if (!(V > 0.0 && law->mu_prime > 0.0))
         return (tip_point){w, 2.0 / 3.0 * w * s, 0.5, 0.0};
-    double K, C, next;
+    double K, C;
     scaled_variables(law, V, s, w, &K, &C);
-    tip_point point = point_at(K, C, s, w, &next);
+    tip_point point = point_at(K, C, s, w, next);
     point.by_V = velocity_exponent(K, C);
     return point;
 }
@@ -423,14 +424,28 @@ static tip_point taken_on(const tip_point *before, double s_before, double s, do
     return point;
 }
 
+/* A row of any arguments: as the others, but for widths found alone. */
+static void any_row(const tip_law *law, double V, int count, const double *s, tip_point *point) {
+    double exponent = 1.0;
+    for (int k = 0; k < count; k++) {
+        if (V > 0.0 && s[k] < ROW_NEAR * s[0]) {
+            const double e = point[k - 1].w - ilsai_tip_width(law, 0.0, s[k - 1]);
+            const double more = e * pow(s[k] / s[k - 1], exponent);
+            point[k] =
+                taken_on(&point[k - 1], s[k - 1], s[k], ilsai_tip_width(law, 0.0, s[k]) + more);
+        } else {
+            point[k] = point_alone(law, V, s[k], &exponent);
+        }
+    }
+}
+
 void ilsai_tip_row(const tip_law *law, double V, int count, const double *s, tip_point *point) {
-    const bool plain = is_plain_row(law, V, count, s);
+    if (!is_plain_row(law, V, count, s)) {
+        any_row(law, V, count, s, point);
+        return;
+    }
     double exponent = 1.0, e = 0.0;
     for (int k = 0; k < count; k++) {
-        if (!plain) {
-            point[k] = point_alone(law, V, s[k]);
-            continue;
-        }
         const width_problem p = plain_problem(law, V, s[k]);
         e = k == 0 ? width_start(&p) : e * pow(s[k] / s[k - 1], exponent);
         if (s[k] < ROW_NEAR * s[0]) {

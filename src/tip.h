@@ -23,7 +23,7 @@ typedef struct tip_point {
 
 /*
  * The same at count distances, best in falling order: each is begun from the last, and all but the
- * first are found to 1e-10; those below a thousandth of it follow by a power law, to 0.2.
+ * first are found to 1e-12; those below a thousandth of it follow by a power law, to 0.2.
  */
 void ilsai_tip_row(const tip_law *law, double V, int count, const double *s, tip_point *point);
 

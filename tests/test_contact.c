@@ -287,7 +287,7 @@ static void a_snapshot_while_closing_resumes_bit_for_bit(void **state) {
 static void closing_knows_no_units(void **state) {
     (void)state;
     const double length = 0x1p8, time = 0x1p-6, stress = 0x1p20 / (length * length);
-    double volume[2], at[2];
+    double volume[2], width[2];
     for (int k = 0; k < 2; k++) {
         host_scene scene = leaking_penny();
         double L = k ? length : 1, T = k ? time : 1, S = k ? stress : 1;
@@ -300,14 +300,18 @@ static void closing_knows_no_units(void **state) {
         scene.material.C_prime *= L / sqrt(T);
         scene.source[0].rate *= L * L * L / T;
         ilsa_solver *solver = shut_in(&scene, L);
-        close_to(solver, 0.5);
+        double t = host_summary(solver).time;
+        for (int n = 1; n <= 20; n++) {
+            assert_int_equal(ilsa_advance(solver, t * (1 + 0.03 * n), NULL), ILSA_OK);
+        }
+        assert_true(host_summary(solver).closed_cells > 20);
         volume[k] = host_summary(solver).volume_fracture / (L * L * L);
-        at[k] = host_summary(solver).time / T;
+        width[k] = host_summary(solver).width_source / L;
         ilsa_solver_destroy(&solver);
     }
-    print_message("contact: in other units volume off by %.2g, time by %.2g\n",
-                  relative(volume[1], volume[0]), relative(at[1], at[0]));
-    assert_true(relative(volume[1], volume[0]) < 1e-9 && relative(at[1], at[0]) < 1e-9);
+    print_message("contact: in other units volume off by %.2g, width by %.2g\n",
+                  relative(volume[1], volume[0]), relative(width[1], width[0]));
+    assert_true(relative(volume[1], volume[0]) < 1e-9 && relative(width[1], width[0]) < 1e-9);
 }
 
 static void a_host_sets_the_closure_width(void **state) {
@@ -396,13 +400,16 @@ static void a_fracture_in_its_barriers_closes_there(void **state) {
 static void pumping_in_strokes_loses_nothing(void **state) {
     (void)state;
     host_scene scene = host_penny(0.01, 61, 0.1);
+    scene.options.coarsen = 1;
     ilsa_solver *solver = host_started(&scene, 1);
     double period = host_summary(solver).time;
     for (int stroke = 0; stroke < (host_long() ? 100 : 10); stroke++) {
         double t = host_summary(solver).time;
         assert_int_equal(ilsa_set_rate(solver, 0, stroke % 2), ILSA_OK);
         ilsa_status status = ilsa_advance(solver, t + 1.5 * period, NULL);
-        assert_true(status == ILSA_OK || (status == ILSA_CLOSED && stroke % 2 == 0));
+        if (status != ILSA_OK && !(status == ILSA_CLOSED && stroke % 2 == 0)) {
+            fail_msg("stroke %d: %s", stroke, ilsa_last_error(solver));
+        }
         assert_true(fabs(host_imbalance(solver)) <= 1e-11);
     }
     ilsa_solver_destroy(&solver);
