@@ -32,7 +32,7 @@ static void check_source(const scene *sc, const scene_source *source) {
 
 static void check_material(const ilsa_material_def *m) {
     FUZZ_EXPECT(m->E_prime > 0 && isfinite(m->E_prime));
-    FUZZ_EXPECT(m->mu_prime > 0 && isfinite(m->mu_prime));
+    FUZZ_EXPECT(m->mu_prime >= 0 && isfinite(m->mu_prime));
     FUZZ_EXPECT(m->K_prime >= 0 && isfinite(m->K_prime));
     FUZZ_EXPECT(m->C_prime >= 0 && isfinite(m->C_prime));
 }
