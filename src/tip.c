@@ -1,7 +1,6 @@
 #include "tip.h"
 
 #include <float.h>
-#include <limits.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -329,8 +328,9 @@ static double width_beyond(const tip_law *law, double V, double s) {
     const wide V_wide = widen(V);
     const wide a = over(times(shifted(law->C_prime, 1), root), root_of(V_wide));
     const wide m3 = times(times(times(over(widen(law->mu_prime), E), V_wide), s_wide), s_wide);
-    int unit = larger_exponent(INT_MIN / 2, w_k, 1);
-    unit = larger_exponent(unit, m3, 3);
+    if (!(m3.m > 0.0))
+        return narrow(w_k, 0);
+    int unit = larger_exponent(m3.e / 3, w_k, 1);
     unit = larger_exponent(unit, times(m3, a), 4);
     const int excess = excess_of(a, unit), unit3 = 3 * unit - excess;
     if (m3.e - unit3 < -BITS_MOST)
@@ -452,11 +452,11 @@ void ilsai_tip_row(const tip_law *law, double V, int count, const double *s, tip
             point[k] = taken_on(&point[k - 1], s[k - 1], s[k], p.w_k + e);
             continue;
         }
-        tip_residual last;
+        tip_residual last = {0};
         e = solve(width_residual, &p, e, k == 0 ? LAST_STEP : LAST_IN_ROW, &last);
         const double w = p.w_k + e;
         point[k] = point_at(p.w_k / w, p.a / w, s[k], w, &exponent);
-        point[k].by_V = 1.0 / last.v_by_w;
+        point[k].by_V = last.v_by_w > 0.0 ? 1.0 / last.v_by_w : 0.0;
     }
 }
 
