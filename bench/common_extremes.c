@@ -136,7 +136,8 @@ static void check_unaltered(extreme_trial *t) {
     void *image = NULL;
     size_t size = 0;
     keep(t, &image, &size);
-    if (extreme_running(t) && (size != t->image_size || memcmp(image, t->image, size) != 0))
+    if (extreme_running(t) &&
+        (!image || size != t->image_size || memcmp(image, t->image, size) != 0))
         extreme_fail(t, "the state was altered by a refused step");
     free(image);
 }
@@ -231,8 +232,9 @@ static ilsa_status set_cells(const extreme_trial *t, const ilsa_mesh *mesh, ilsa
     const ilsa_mesh_def m = mesh_of(t);
     double *sigma = malloc((size_t)m.nx * (size_t)m.ny * sizeof *sigma);
     for (int n = 0; sigma && n < m.nx * m.ny; n++) {
-        const double x = (n % m.nx - 0.5 * (m.nx - 1)) * m.dx / t->cell;
-        const double y = (n / m.nx - 0.5 * (m.ny - 1)) * m.dy / t->cell;
+        const int i = n % m.nx, j = n / m.nx;
+        const double x = (i - 0.5 * (m.nx - 1)) * m.dx / t->cell;
+        const double y = (j - 0.5 * (m.ny - 1)) * m.dy / t->cell;
         sigma[n] = t->unit * t->scene.scale * t->scene.stress(x, y);
     }
     const ilsa_status status = sigma ? ilsa_stress_set_cells(stress, mesh, sigma) : ILSA_ERR_MEMORY;

@@ -41,8 +41,10 @@ static void grow_uniform(extreme_trial *t) {
     if (!extreme_running(t))
         return;
     if (ilsa_get_pressure(t->solver, &pressure) || ilsa_get_footprint(t->solver, &kind) ||
-        ilsa_get_mesh_def(t->solver, &m))
+        ilsa_get_mesh_def(t->solver, &m)) {
         extreme_fail(t, "no fields");
+        return;
+    }
     for (int n = 0; n < m.nx * m.ny; n++)
         if (kind[n] == ILSA_CELL_CHANNEL) {
             low = fmin(low, pressure[n]);

@@ -291,8 +291,8 @@ static void add_spectrum_row(fft *f, int one_sided_x, int one_sided_y, size_t l)
         double *m = spectrum_row(f, first, end - first, l) + (k - first);
         double *up = f->full[l * h + k], *low = f->full[mirrored * h + k];
         double upper[2] = {scale * up[0], scale * up[1]};
-        double lower[2] = {scale * low[0], scale * low[1]};
         if (f->terms == TERMS_QUARTER) {
+            double lower[2] = {scale * low[0], scale * low[1]};
             add_to_matrix(m, end - first, one_sided_x, one_sided_y, upper, lower);
         } else if (one_sided_x || one_sided_y) {
             m[IMAGE_R * (end - first)] = upper[0];
@@ -306,8 +306,9 @@ static void add_spectrum_row(fft *f, int one_sided_x, int one_sided_y, size_t l)
 static void make_spectrum(fft *f, const double *kernel) {
     size_t count = ((size_t)f->cy + 1) * (size_t)f->terms * half_length(f);
     memset(f->spectrum, 0, count * sizeof *f->spectrum);
-    for (int y = 0; y <= (f->about_y != MIRROR_NONE); y++)
-        for (int x = 0; x <= (f->about_x != MIRROR_NONE); x++) {
+    int last_x = f->about_x == MIRROR_NONE ? 0 : 1, last_y = f->about_y == MIRROR_NONE ? 0 : 1;
+    for (int y = 0; y <= last_y; y++)
+        for (int x = 0; x <= last_x; x++) {
             transform_kernel(f, kernel, x, y);
             for (size_t l = 0; l <= (size_t)f->cy; l++)
                 add_spectrum_row(f, x, y, l);

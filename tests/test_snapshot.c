@@ -556,6 +556,8 @@ static void unsound_images_do_no_harm(void **state) {
 /* The place of a number in an image; the test fails if it is not there. */
 static size_t place_of(const host_image *image, double number) {
     for (size_t at = HEADER; at + sizeof number <= image->size; at++)
+        /* The same bits are meant. */
+        /* NOLINTNEXTLINE(bugprone-suspicious-memory-comparison,cert-exp42-c,cert-flp37-c) */
         if (memcmp(image->bytes + at, &number, sizeof number) == 0)
             return at;
     fail_msg("%g is not in the image", number);

@@ -219,7 +219,7 @@ static void powers_of_two_are_units_to_the_last_bit(void **state) {
 }
 
 /* What a function that fails must leave in its outputs. */
-#define UNTOUCHED -7.25
+#define UNTOUCHED (-7.25)
 
 static void results_above_the_range_are_refused(void **state) {
     (void)state;

@@ -279,7 +279,7 @@ static void set_cells(world *w) {
     if (mesh && cells_of(mesh) == 0)
         return;
     for (unsigned k = 0; k < CELLS_MAX; k++)
-        sigma[k] = k % every ? first : other;
+        sigma[k] = k % every != 0 ? first : other;
     check_status(ilsa_stress_set_cells(stress, mesh, sigma), NULL);
 }
 
