@@ -66,27 +66,17 @@ static ilsa_status reserve(coupled *c, int count) {
         ilsai_gmres_reserve(c->krylov, (size_t)count) != ILSA_OK) {
         return ILSA_ERR_MEMORY;
     }
-    if (count > c->capacity) {
-        size_t capacity = (size_t)count + (size_t)count / 2 + 64;
-        double *rhs = realloc(c->rhs, capacity * sizeof *rhs);
-        c->rhs = rhs ? rhs : c->rhs;
-        double *step = realloc(c->step, capacity * sizeof *step);
-        c->step = step ? step : c->step;
-        double *shift = realloc(c->shift, capacity * sizeof *shift);
-        c->shift = shift ? shift : c->shift;
-        double *lift = realloc(c->lift, capacity * sizeof *lift);
-        c->lift = lift ? lift : c->lift;
-        double *stress = realloc(c->stress, capacity * sizeof *stress);
-        c->stress = stress ? stress : c->stress;
-        double *caught = realloc(c->caught, capacity * sizeof *caught);
-        c->caught = caught ? caught : c->caught;
-        double *edge = realloc(c->matrix.edge, capacity * sizeof *edge);
-        c->matrix.edge = edge ? edge : c->matrix.edge;
-        if (!rhs || !step || !shift || !lift || !stress || !caught || !edge) {
+    double **arrays[] = {&c->rhs,    &c->step,   &c->shift,      &c->lift,
+                         &c->stress, &c->caught, &c->matrix.edge};
+    size_t capacity = (size_t)count + (size_t)count / 2 + 64;
+    for (size_t k = 0; count > c->capacity && k < sizeof arrays / sizeof *arrays; k++) {
+        double *fresh = realloc(*arrays[k], capacity * sizeof *fresh);
+        if (!fresh) {
             return ILSA_ERR_MEMORY;
         }
-        c->capacity = (int)capacity;
+        *arrays[k] = fresh;
     }
+    c->capacity = count > c->capacity ? (int)capacity : c->capacity;
     return ILSA_OK;
 }
 
@@ -238,16 +228,6 @@ static int is_forced(coupled *c, const coupled_problem *problem) {
     return excess > ILSAI_CONTACT_FORCED * net || violation > ILSAI_CONTACT_FORCED * width;
 }
 
-/* Cells that are closed or drain. */
-static int count_closed(const coupled *c) {
-    int count = 0;
-    for (int k = 0; k < c->cells.count; k++) {
-        int unknown = c->cells.unknown[k];
-        count += unknown == UNKNOWN_LEAK || unknown == UNKNOWN_CONTACT;
-    }
-    return count;
-}
-
 static progress take_step(coupled *c, const coupled_problem *problem, double length, int late) {
     contact faces = contact_of(c, problem, late);
     double change = 0, largest = 0, sum = 0;
@@ -292,15 +272,18 @@ static void hold_opening(const coupled *c, const coupled_problem *problem) {
     }
 }
 
-/* Opens the closed cells that are to open with the widths as they are. */
+/* Opens the closed cells that are to open with the widths as they are, and counts the others. */
 static int reopen(coupled *c, const coupled_problem *problem, int late) {
     contact faces = contact_of(c, problem, late);
     int opened = 0;
+    c->closed = 0;
     for (int k = 0; k < c->cells.count; k++) {
-        if (c->cells.unknown[k] == UNKNOWN_CONTACT && ilsai_contact_lifts(&faces, k)) {
+        const unsigned char *unknown = &c->cells.unknown[k];
+        if (*unknown == UNKNOWN_CONTACT && ilsai_contact_lifts(&faces, k)) {
             ilsai_contact_reopen(&faces, k);
             opened++;
         }
+        c->closed += *unknown == UNKNOWN_LEAK || *unknown == UNKNOWN_CONTACT;
     }
     return opened;
 }
@@ -338,7 +321,6 @@ static ilsa_status newton(coupled *c, const coupled_problem *problem, coupled_co
         int late = k >= ILSAI_CONTACT_LATE;
         ilsai_coupled_pressure(c, problem, counts);
         made.switched += reopen(c, problem, late);
-        c->closed = count_closed(c);
         set_rhs(c, problem);
         if (made.switched > 0 && problem->contact.state) {
             hold_opening(c, problem);

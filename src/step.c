@@ -333,10 +333,6 @@ static ilsa_status iterate(ilsa_solver *s, double dt, coupled_counts *counts, il
     return ILSA_STEP_REJECTED;
 }
 
-static double injected_in(const ilsa_solver *s, double dt) {
-    return ilsai_injection_rate(s) * dt;
-}
-
 static void scale_widths(ilsa_solver *s, double factor) {
     box part = ilsai_box_fold(&s->g, &s->trial_footprint);
     for (int j = part.y0; j <= part.y1; j++) {
@@ -355,7 +351,8 @@ static void scale_widths(ilsa_solver *s, double factor) {
  */
 static ilsa_status balance_volume(ilsa_solver *s, double dt) {
     volumes v = sum_volumes(s);
-    double injected = s->now.injected + injected_in(s, dt), leaked = s->now.leaked + v.leaked;
+    double injected = s->now.injected + ilsai_injection_rate(s) * dt,
+           leaked = s->now.leaked + v.leaked;
     double fracture = v.open > 0 ? injected - leaked : v.held;
     double off = fabs(injected - leaked - v.held - v.open);
     if (!(off < ILSAI_BALANCE_MAX * (v.open > 0 ? v.open : v.held))) {
