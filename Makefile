@@ -91,7 +91,7 @@ ifndef FFT
 FFT := $(if $(call pc_exists,fftw3),fftw,none)
 endif
 ifeq ($(FFT),fftw)
-FFT_SOURCE  = src/fft_fftw.c
+FFT_SOURCE  = src/elastic/convolution_fftw.c
 FFT_MISSING := $(if $(call pc_exists,fftw3),,fftw3 not found by $(PKG_CONFIG): make deps)
 FFT_CFLAGS := $(call pc_cflags,fftw3)
 FFT_LIBS    = -lfftw3_threads $(call pc_libs,fftw3)
@@ -101,11 +101,11 @@ FFT_MISSING = $(if $(MKLROOT)$(filter-out file,$(origin MKL_LIBS)),,set MKLROOT)
 MKL_CFLAGS ?= -isystem $(MKLROOT)/include/fftw -isystem $(MKLROOT)/include
 MKL_LIBS   ?= -L$(MKLROOT)/lib -Wl,--push-state,--no-as-needed \
               -lmkl_intel_lp64 -lmkl_sequential -lmkl_core -Wl,--pop-state
-FFT_SOURCE  = src/fft_fftw.c
+FFT_SOURCE  = src/elastic/convolution_fftw.c
 FFT_CFLAGS  = -DILSA_FFT_MKL $(MKL_CFLAGS)
 FFT_LIBS    = $(MKL_LIBS)
 else ifeq ($(FFT),none)
-FFT_SOURCE  = src/fft_none.c
+FFT_SOURCE  = src/elastic/convolution_none.c
 else
 $(error FFT=$(FFT): fftw, mkl or none)
 endif
@@ -148,7 +148,7 @@ LIB_PC = $(LIB)/pkgconfig/ilsa.pc
 objects = $(patsubst %.c,$(B)/obj/%.o,$1)
 names   = $(patsubst %.c,%,$(notdir $1))
 
-SOURCES  := $(filter-out src/fft_fftw.c src/fft_none.c,$(wildcard src/*.c)) \
+SOURCES  := $(filter-out src/elastic/convolution_fftw.c src/elastic/convolution_none.c,$(wildcard src/*/*.c)) \
             $(wildcard $(FFT_SOURCE))
 HEADERS  := $(wildcard include/ilsa/*.h)
 EXAMPLES := $(call names,$(wildcard examples/*.c))
@@ -224,7 +224,7 @@ $(B)/flags: FORCE
 	@mkdir -p $(@D)
 	@printf '%s\n' "$$flags" | cmp -s - $@ || printf '%s\n' "$$flags" >$@
 
-$(B)/obj/src/%:      INCLUDE = $(BLAS_CFLAGS) $(FFT_CFLAGS) $(UNTRACED_$(FLAVOUR))
+$(B)/obj/src/%:      INCLUDE = -Isrc $(BLAS_CFLAGS) $(FFT_CFLAGS) $(UNTRACED_$(FLAVOUR))
 $(B)/obj/tests/%:    INCLUDE = -Isrc $(call pc_cflags,$(CMOCKA_PC))
 $(B)/obj/tests/fuzz/%: INCLUDE = -Isrc -Iexamples/ilsa_run
 $(B)/obj/bench/%:    INCLUDE = -Isrc $(BLAS_CFLAGS)
@@ -316,7 +316,7 @@ same-answer: $(BIN)/bench_answer ## one answer from gcc and clang, -O0 and -O3, 
 	    $(foreach a,$(ANSWERS),build/$(firstword $(subst :, ,$a))/bin/bench_answer)
 
 # The programs that take valgrind a minute or two at most; `make asan` runs all of them.
-VALGRIND_TESTS = anderson contour coupled elasticity flow front gmres grid handles multigrid tipcell
+VALGRIND_TESTS = anderson polyline coupled elasticity flow front gmres grid handles multigrid tip_cell
 VALGRIND = valgrind -q --error-exitcode=9 --leak-check=full \
            --show-leak-kinds=definite,indirect,possible \
            --errors-for-leak-kinds=definite,indirect,possible --suppressions=tests/valgrind.supp
@@ -345,7 +345,7 @@ run-fuzzers: $(FUZZED:%=$(BIN)/%)
 # signal mask), ends of iterations that have not failed to converge yet, and bounds that callers
 # keep already.
 coverage: ## the lines and branches of src/ that the tests reach, and the lines that none reaches
-	@rm -f build/coverage/obj/src/*.gcda
+	@rm -f build/coverage/obj/src/*/*.gcda
 	@$(MAKE) --no-print-directory FLAVOUR=coverage CC=gcc check
 	@for f in $(SOURCES); do $(GCOV) -b -n -o build/coverage/obj/$${f%.c}.o $$f; done 2>/dev/null \
 	    | awk -f tests/coverage.awk

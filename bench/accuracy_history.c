@@ -7,7 +7,7 @@
  */
 #include "common_layers.h"
 
-#include "state.h"
+#include "step/state.h"
 
 #include <math.h>
 #include <stdio.h>

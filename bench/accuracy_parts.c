@@ -6,12 +6,12 @@
  */
 #include "common_radial.h"
 
-#include "elasticity.h"
-#include "front.h"
-#include "radial.h"
-#include "step.h"
-#include "survey.h"
-#include "tipcell.h"
+#include "elastic/elasticity.h"
+#include "front/march.h"
+#include "tip/penny.h"
+#include "step/step.h"
+#include "front/survey.h"
+#include "tip/tip_cell.h"
 
 #include <math.h>
 #include <stdio.h>

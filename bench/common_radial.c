@@ -1,6 +1,6 @@
 #include "common_radial.h"
 
-#include "radial.h"
+#include "tip/penny.h"
 
 #include <math.h>
 #include <stdio.h>

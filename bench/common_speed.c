@@ -2,7 +2,7 @@
 
 #include "common_layers.h"
 #include "common_radial.h"
-#include "state.h"
+#include "step/state.h"
 
 #include <math.h>
 #include <stdio.h>

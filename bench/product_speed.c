@@ -2,8 +2,8 @@
  * Wall time of one elasticity product by box size: FFT, BLAS, direct sum; of a half and a quarter
  * of the box by FFT, where it is symmetric; and of a new box.
  */
-#include "clock.h"
-#include "elasticity.h"
+#include "base/clock.h"
+#include "elastic/elasticity.h"
 
 #include <math.h>
 #include <stddef.h>

@@ -6,7 +6,7 @@
  *
  * A penny without symmetry. For a machine with two cores that do nothing else.
  */
-#include "clock.h"
+#include "base/clock.h"
 #include "common_radial.h"
 
 #include <math.h>

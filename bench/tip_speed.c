@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <time.h>
 
-#include "tipcell.h"
+#include "tip/tip_cell.h"
 
 enum { POINTS = 4096, PASSES = 25 };
 

@@ -9,7 +9,7 @@
 #include "../bench/common_radial.h"
 #include "host.h"
 #include "numbers.h"
-#include "state.h"
+#include "step/state.h"
 
 #include <stdio.h>
 

@@ -1,5 +1,5 @@
 /* Anderson acceleration on fixed points that are known. */
-#include "anderson.h"
+#include "solve/anderson.h"
 #include "failing.h"
 
 #include <math.h>

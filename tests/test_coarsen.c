@@ -1,8 +1,8 @@
 /* The state on cells twice as large: nothing lost, and the fracture goes on as it did. */
 #include "csv.h"
-#include "error.h"
+#include "base/error.h"
 #include "host.h"
-#include "state.h"
+#include "step/state.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -1,6 +1,6 @@
 /* Closure: what a host sees of cells whose faces touch, after shut-in and under stress that rises.
  */
-#include "elasticity.h"
+#include "elastic/elasticity.h"
 #include "host.h"
 #include "numbers.h"
 

@@ -1,10 +1,10 @@
 /* The coupled system (4.4) to (4.8): its Newton matrix and its solution, against residuals worked
  * out cell by cell on the unfolded mesh with the kernel summed directly. */
-#include "coupled.h"
+#include "solve/coupled.h"
 #include "failing.h"
-#include "gmres.h"
-#include "jacobian.h"
-#include "tuning.h"
+#include "solve/gmres.h"
+#include "solve/jacobian.h"
+#include "base/tuning.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -1,6 +1,6 @@
 /* The kernel against 80-digit values, the product against a direct sum and against physics. */
 #include "csv.h"
-#include "elasticity.h"
+#include "elastic/elasticity.h"
 #include "failing.h"
 
 #include <math.h>

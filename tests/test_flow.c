@@ -1,6 +1,6 @@
 /* The active cells and the lubrication operator on them, against Poiseuille's law. */
 #include "failing.h"
-#include "flow.h"
+#include "flow/lubrication.h"
 #include <ilsa/solver.h>
 
 #include <math.h>

@@ -1,6 +1,6 @@
 /* Fast marching: against planes, circles, the discrete equation itself and the unfolded march. */
 #include "failing.h"
-#include "front.h"
+#include "front/march.h"
 #include <ilsa/solver.h>
 
 #include <math.h>

@@ -1,6 +1,6 @@
 /* GMRES on matrices small enough to know the answer. */
 #include "failing.h"
-#include "gmres.h"
+#include "solve/gmres.h"
 
 #include <math.h>
 #include <setjmp.h>

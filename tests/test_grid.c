@@ -1,5 +1,5 @@
 /* The folded mesh: representatives, images and neighbours agree with mirrored coordinates. */
-#include "grid.h"
+#include "base/grid.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -1,9 +1,9 @@
 /* Mesh, material, stress, status, version: every branch of every function, bad input first. */
-#include "error.h"
+#include "base/error.h"
 #include "failing.h"
-#include "material.h"
-#include "mesh.h"
-#include "stress.h"
+#include "model/material.h"
+#include "model/mesh.h"
+#include "model/stress.h"
 #include <ilsa/version.h>
 
 #include <limits.h>

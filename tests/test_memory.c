@@ -3,7 +3,7 @@
  * message, nothing changed, and the same bits as ever when the call is made again. That nothing
  * leaks is seen under AddressSanitizer and valgrind.
  */
-#include "elasticity.h"
+#include "elastic/elasticity.h"
 #include "failing.h"
 #include "host.h"
 

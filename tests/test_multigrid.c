@@ -2,9 +2,9 @@
  * The two halves of the preconditioner: one multigrid cycle for flow with springs, and widths from
  * the near field of the elasticity.
  */
-#include "../src/elasticity.h"
-#include "../src/multigrid.h"
-#include "../src/nearfield.h"
+#include "elastic/elasticity.h"
+#include "solve/multigrid.h"
+#include "solve/near_field.h"
 
 #include <math.h>
 #include <setjmp.h>

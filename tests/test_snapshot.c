@@ -1,5 +1,5 @@
 /* Snapshots: the same bits after a restore, and nothing changed by an image that is refused. */
-#include "error.h"
+#include "base/error.h"
 #include "failing.h"
 #include "host.h"
 
@@ -504,7 +504,7 @@ static void refusal_without_a_fracture(void **state) {
     ilsa_solver_destroy(&empty);
 }
 
-/* The checksum of src/snapshot.c, so that unsound images get past it. */
+/* The checksum of src/api/snapshot.c, so that unsound images get past it. */
 static void sign(host_image *image) {
     uint64_t hash = 14695981039346656037u, word;
     size_t k = HEADER;

@@ -1,7 +1,7 @@
 /* Every function of solver.h: bad input of each kind, then what good input gives. */
-#include "elasticity.h"
+#include "elastic/elasticity.h"
 #include "host.h"
-#include "tuning.h"
+#include "base/tuning.h"
 
 #include <float.h>
 #include <math.h>

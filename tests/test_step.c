@@ -1,7 +1,7 @@
 /* The physics of a step: what it must conserve, leave alone, mirror and scale. */
-#include "../src/jump.h"
+#include "tip/stress_step.h"
 #include "host.h"
-#include "state.h"
+#include "step/state.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -4,7 +4,7 @@
  */
 #include "failing.h"
 #include "host.h"
-#include "team.h"
+#include "base/thread_pool.h"
 
 #include <pthread.h>
 #include <setjmp.h>

@@ -1,4 +1,4 @@
-/* The closed-form tip asymptote: src/tip.c against tables, limits and itself. */
+/* The closed-form tip asymptote: src/tip/asymptote.c against tables, limits and itself. */
 #include <float.h>
 #include <math.h>
 #include <setjmp.h>
@@ -10,7 +10,7 @@
 
 #include "csv.h"
 #include "numbers.h"
-#include "tip.h"
+#include "tip/asymptote.h"
 
 #define BETA_M  3.1473451902649446
 #define BETA_MT 2.5335594408265696

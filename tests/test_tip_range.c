@@ -4,7 +4,7 @@
  */
 #include "host.h"
 #include "numbers.h"
-#include "tip.h"
+#include "tip/asymptote.h"
 
 #include <fenv.h>
 #include <float.h>

@@ -7,7 +7,7 @@
 
 /* For the header and the checksum, which are its own; the library's copy is then not linked. */
 /* NOLINTNEXTLINE(bugprone-suspicious-include) */
-#include "../../src/snapshot.c"
+#include "api/snapshot.c"
 
 enum { SIZE = 11, EDITS = 12, GROWTH = 64 };
 

@@ -1,0 +1,101 @@
+#include "base/unknowns.h"
+
+#include <ilsa/solver.h>
+#include <stdlib.h>
+#include <string.h>
+
+ilsa_status ilsai_active_create(active *a, const ilsa_mesh_def *mesh) {
+    memset(a, 0, sizeof *a);
+    a->mesh_cells = (size_t)mesh->nx * (size_t)mesh->ny;
+    a->slot = malloc(a->mesh_cells * sizeof *a->slot);
+    if (!a->slot) {
+        return ILSA_ERR_MEMORY;
+    }
+    for (size_t k = 0; k < a->mesh_cells; k++) {
+        a->slot[k] = -1;
+    }
+    return ILSA_OK;
+}
+
+void ilsai_active_destroy(active *a) {
+    free(a->cell);
+    free(a->unknown);
+    free(a->neighbour);
+    free(a->slot);
+    memset(a, 0, sizeof *a);
+}
+
+static ilsa_status reserve(active *a, size_t count) {
+    if (count <= (size_t)a->capacity) {
+        return ILSA_OK;
+    }
+    size_t capacity = count + count / 2 + 64;
+    int *cell = realloc(a->cell, capacity * sizeof *cell);
+    a->cell = cell ? cell : a->cell;
+    unsigned char *unknown = realloc(a->unknown, capacity);
+    a->unknown = unknown ? unknown : a->unknown;
+    int *neighbour = realloc(a->neighbour, GRID_FACES * capacity * sizeof *neighbour);
+    a->neighbour = neighbour ? neighbour : a->neighbour;
+    if (!cell || !unknown || !neighbour) {
+        return ILSA_ERR_MEMORY;
+    }
+    a->capacity = (int)capacity;
+    return ILSA_OK;
+}
+
+static void forget(active *a) {
+    for (int k = 0; k < a->count; k++) {
+        a->slot[a->cell[k]] = -1;
+    }
+    a->count = 0;
+}
+
+static void add(active *a, int cell, unsigned char kind) {
+    if (kind != ILSA_CELL_EMPTY) {
+        a->cell[a->count] = cell;
+        a->unknown[a->count] = kind == ILSA_CELL_TIP ? UNKNOWN_PRESSURE : UNKNOWN_WIDTH;
+        a->slot[cell] = a->count++;
+    }
+}
+
+static void number_cells(active *a, const grid *g, const unsigned char *kind, const box *part) {
+    if (part->x1 - part->x0 > part->y1 - part->y0) {
+        for (int i = part->x0; i <= part->x1; i++) {
+            for (int j = part->y0; j <= part->y1; j++) {
+                int cell = ilsai_grid_cell(g, i, j);
+                add(a, cell, kind[cell]);
+            }
+        }
+    } else {
+        for (int j = part->y0; j <= part->y1; j++) {
+            for (int i = part->x0; i <= part->x1; i++) {
+                int cell = ilsai_grid_cell(g, i, j);
+                add(a, cell, kind[cell]);
+            }
+        }
+    }
+}
+
+static void find_neighbours(active *a, const grid *g) {
+    for (int k = 0; k < a->count; k++) {
+        int i = a->cell[k] % g->nx, j = a->cell[k] / g->nx;
+        for (int face = 0; face < GRID_FACES; face++) {
+            int cell = ilsai_grid_neighbour(g, i, j, face);
+            a->neighbour[GRID_FACES * k + face] = cell < 0 ? -1 : a->slot[cell];
+        }
+    }
+}
+
+ilsa_status ilsai_active_set(active *a, const grid *g, const box *footprint,
+                             const unsigned char *kind) {
+    box part = ilsai_box_fold(g, footprint);
+    size_t size = ilsai_box_columns(&part) * ilsai_box_rows(&part);
+    forget(a);
+    if (reserve(a, size) != ILSA_OK) {
+        return ILSA_ERR_MEMORY;
+    }
+    a->footprint = *footprint;
+    number_cells(a, g, kind, &part);
+    find_neighbours(a, g);
+    return ILSA_OK;
+}

@@ -1,0 +1,99 @@
+#include "flow/contact.h"
+
+#include <math.h>
+
+/* The width that a cell keeps when closed. */
+static double kept_width(const contact *c, int cell) {
+    double old = c->old[cell];
+    return old > 0 && old < c->field.closure_width ? old : c->field.closure_width;
+}
+
+/* The most that need not leak: all but what the cell loses by closing. */
+static double relief_limit(const contact *c, int k) {
+    int cell = c->cells->cell[k];
+    if (!c->field.leak) {
+        return 0;
+    }
+    double full = fmax(c->field.leak[cell] - c->shift[k], 0);
+    return full - fmin(full, fmax(c->old[cell] - kept_width(c, cell), 0));
+}
+
+static void set_relief(const contact *c, int k, double value) {
+    if (c->field.relief) {
+        c->field.relief[c->cells->cell[k]] = value;
+    }
+}
+
+static void set_state(const contact *c, int k, unsigned char state) {
+    static const unsigned char unknown[] = {UNKNOWN_WIDTH, UNKNOWN_LEAK, UNKNOWN_CONTACT,
+                                            UNKNOWN_WIDTH};
+    int cell = c->cells->cell[k];
+    c->field.state[cell] = state;
+    c->cells->unknown[k] = unknown[state];
+    c->caught[k] = c->pressure[cell];
+}
+
+void ilsai_contact_begin(const contact *c) {
+    for (int k = 0; k < c->cells->count; k++) {
+        int cell = c->cells->cell[k], tip = c->cells->unknown[k] == UNKNOWN_PRESSURE;
+        unsigned char state = tip ? CONTACT_OPEN : c->field.state[cell];
+        double limit = state == CONTACT_OPEN ? 0 : relief_limit(c, k);
+        if (state == CONTACT_DRAINING) {
+            limit = fmax(fmin(c->field.relief[cell], limit), 0);
+        }
+        set_relief(c, k, limit);
+        if (!tip) {
+            set_state(c, k, state);
+        }
+        if (state != CONTACT_OPEN) {
+            c->width[cell] = kept_width(c, cell);
+        }
+    }
+}
+
+/* What the width would lack goes on as what does not leak. */
+static void close_cell(const contact *c, int k, double missing) {
+    double limit = relief_limit(c, k);
+    int drains = missing < limit || (c->late && c->field.relief);
+    c->width[c->cells->cell[k]] += missing;
+    set_relief(c, k, drains ? missing : limit);
+    set_state(c, k, drains ? CONTACT_DRAINING : CONTACT_CLOSED);
+}
+
+int ilsai_contact_bound(const contact *c, int k) {
+    int cell = c->cells->cell[k];
+    if (c->cells->unknown[k] == UNKNOWN_WIDTH) {
+        double missing = kept_width(c, cell) - c->width[cell];
+        c->field.state[cell] = CONTACT_OPEN;
+        if (missing >= 0) {
+            close_cell(c, k, missing);
+            return 1;
+        }
+    } else if (c->cells->unknown[k] == UNKNOWN_LEAK && !c->late) {
+        double limit = relief_limit(c, k), relief = c->field.relief[cell];
+        if (relief < 0 || relief > limit) {
+            set_relief(c, k, relief < 0 ? 0 : limit);
+            set_state(c, k, relief < 0 ? CONTACT_OPEN : CONTACT_CLOSED);
+            return 1;
+        }
+    }
+    return 0;
+}
+
+int ilsai_contact_lifts(const contact *c, int k) {
+    return c->pressure[c->cells->cell[k]] > c->stress[k] && !(c->late && !c->field.relief);
+}
+
+void ilsai_contact_reopen(const contact *c, int k) {
+    int drains = relief_limit(c, k) > 0 || (c->late && c->field.relief);
+    c->pressure[c->cells->cell[k]] = c->stress[k];
+    set_state(c, k, drains ? CONTACT_DRAINING : CONTACT_OPENING);
+}
+
+double ilsai_contact_violation(const contact *c, int k) {
+    if (c->cells->unknown[k] != UNKNOWN_LEAK) {
+        return 0;
+    }
+    double relief = c->field.relief[c->cells->cell[k]];
+    return fmax(-relief, relief - relief_limit(c, k));
+}

@@ -1,0 +1,217 @@
+#include "front/geometry.h"
+
+#include "base/tuning.h"
+#include <math.h>
+
+typedef struct vector {
+    double x, y;
+} vector;
+
+static int on_mesh(const ilsa_solver *s, int i, int j) {
+    return i >= 0 && i < s->mesh.nx && j >= 0 && j < s->mesh.ny;
+}
+
+/* Whether the march has set the level of a cell: not so in the channel behind the survey cells. */
+static double level_at(const ilsa_solver *s, int i, int j) {
+    if (!on_mesh(s, i, j)) {
+        return INFINITY;
+    }
+    int cell = j * s->mesh.nx + i;
+    return s->field.kind[cell] == ILSA_CELL_CHANNEL ? INFINITY : s->field.level[cell];
+}
+
+/* Slope of the level along one axis from the lower of the two neighbours, 0 if both are higher. */
+static double upwind_slope(double here, double below, double above, double d) {
+    double lower = fmin(below, above);
+    if (!(lower < here)) {
+        return 0;
+    }
+    return (below <= above ? here - below : above - here) / d;
+}
+
+/* Normal of the front in a cell outside the channel, pointing outwards; 0 where it is not known. */
+static vector normal_in(const ilsa_solver *s, int i, int j) {
+    double here = level_at(s, i, j);
+    vector n = {0, 0};
+    if (!isfinite(here)) {
+        return n;
+    }
+    n.x = upwind_slope(here, level_at(s, i - 1, j), level_at(s, i + 1, j), s->mesh.dx);
+    n.y = upwind_slope(here, level_at(s, i, j - 1), level_at(s, i, j + 1), s->mesh.dy);
+    double size = hypot(n.x, n.y);
+    return size > 0 ? (vector){n.x / size, n.y / size} : n;
+}
+
+/* Mean normal of the cells across the open faces of survey cell (i, j). */
+static vector normal_seen(const ilsa_solver *s, int i, int j) {
+    static const int side[GRID_FACES][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
+    vector sum = {0, 0};
+    for (int face = 0; face < GRID_FACES; face++) {
+        int a = i + side[face][0], b = j + side[face][1];
+        if (on_mesh(s, a, b) && s->field.kind[b * s->mesh.nx + a] < ILSA_CELL_SURVEY) {
+            vector n = normal_in(s, a, b);
+            sum.x += n.x;
+            sum.y += n.y;
+        }
+    }
+    double size = hypot(sum.x, sum.y);
+    return size > 0 ? (vector){sum.x / size, sum.y / size} : sum;
+}
+
+/* Normal equations of a parabola eta = c0 + c1 xi + c2 xi^2. */
+typedef struct parabola {
+    double m[5], r[3]; /* sums of xi^k, of eta xi^k */
+    double least, largest;
+} parabola;
+
+static void add_point(parabola *p, double xi, double eta) {
+    double power = 1;
+    for (int k = 0; k < 5; k++) {
+        p->m[k] += power;
+        if (k < 3) {
+            p->r[k] += eta * power;
+        }
+        power *= xi;
+    }
+    p->least = fmin(p->least, xi);
+    p->largest = fmax(p->largest, xi);
+}
+
+/* -2 c2 over (1 + c1^2)^(3/2), by Cramer's rule; 0 for points that do not settle it. */
+static double fitted_curvature(const parabola *p, double span) {
+    const double *m = p->m, *r = p->r;
+    if (p->m[0] < ILSAI_SHAPE_POINTS || p->least > -span || p->largest < span) {
+        return 0;
+    }
+    double det = m[0] * (m[2] * m[4] - m[3] * m[3]) - m[1] * (m[1] * m[4] - m[2] * m[3]) +
+                 m[2] * (m[1] * m[3] - m[2] * m[2]);
+    double c1 = m[0] * (r[1] * m[4] - m[3] * r[2]) - r[0] * (m[1] * m[4] - m[2] * m[3]) +
+                m[2] * (m[1] * r[2] - r[1] * m[2]);
+    double c2 = m[0] * (m[2] * r[2] - r[1] * m[3]) - m[1] * (m[1] * r[2] - r[1] * m[2]) +
+                r[0] * (m[1] * m[3] - m[2] * m[2]);
+    if (!(fabs(det) > 1e-12 * m[0] * m[2] * m[4])) {
+        return 0;
+    }
+    double slope = c1 / det;
+    return -2 * c2 / det / pow(1 + slope * slope, 1.5);
+}
+
+/* Curvature of the front through the tip cells around the point it has in front of (i, j). */
+static double curvature_at(const ilsa_solver *s, int i, int j, vector n, double distance) {
+    double size = fmax(s->mesh.dx, s->mesh.dy), reach = ILSAI_SHAPE_REACH * size;
+    double x0 = ilsai_mesh_x(&s->mesh, i) + distance * n.x;
+    double y0 = ilsai_mesh_y(&s->mesh, j) + distance * n.y;
+    int wx = (int)ceil(reach / s->mesh.dx) + 1, wy = (int)ceil(reach / s->mesh.dy) + 1;
+    parabola p = {{0}, {0}, INFINITY, -INFINITY};
+    for (int b = j - wy; b <= j + wy; b++) {
+        for (int a = i - wx; a <= i + wx; a++) {
+            if (!on_mesh(s, a, b) || s->field.kind[b * s->mesh.nx + a] != ILSA_CELL_TIP) {
+                continue;
+            }
+            vector m = normal_in(s, a, b);
+            double level = s->field.level[b * s->mesh.nx + a];
+            double x = ilsai_mesh_x(&s->mesh, a) - level * m.x - x0;
+            double y = ilsai_mesh_y(&s->mesh, b) - level * m.y - y0;
+            double xi = -x * n.y + y * n.x;
+            if (m.x * n.x + m.y * n.y > ILSAI_SHAPE_ALIKE && fabs(xi) <= reach) {
+                add_point(&p, xi, x * n.x + y * n.y);
+            }
+        }
+    }
+    double curvature = fitted_curvature(&p, ILSAI_SHAPE_SPAN * reach),
+           limit = ILSAI_SHAPE_CURVATURE / size;
+    return fmax(-limit, fmin(limit, curvature));
+}
+
+/* Whether a cell can tell the width further in; then its depth behind the seed is set. */
+static int try_inner(const ilsa_solver *s, front_seed *seed, int i, int j, vector n, int di, int dj,
+                     unsigned char least) {
+    if (!on_mesh(s, i + di, j + dj)) {
+        return 0;
+    }
+    int cell = (j + dj) * s->mesh.nx + i + di;
+    double along = -(di * s->mesh.dx * n.x + dj * s->mesh.dy * n.y);
+    double across = -di * s->mesh.dx * n.y + dj * s->mesh.dy * n.x;
+    double depth = along - 0.5 * seed->curvature * across * across;
+    if (s->field.kind[cell] < least || !(depth > 0)) {
+        return 0;
+    }
+    seed->inner = ilsai_grid_fold(&s->g, i + di, j + dj);
+    seed->depth = depth;
+    return 1;
+}
+
+/*
+ * The cell behind (i, j) along the normal, under the same stress: two cells in if the channel is
+ * that deep, else the next one. The width follows the tip's only where the stress does not jump.
+ */
+static void find_inner(const ilsa_solver *s, front_seed *seed, int i, int j, vector n) {
+    double cell = s->mesh.dx * fabs(n.x) + s->mesh.dy * fabs(n.y);
+    double di = -n.x * cell / s->mesh.dx, dj = -n.y * cell / s->mesh.dy;
+    seed->inner = -1;
+    if (!try_inner(s, seed, i, j, n, (int)lround(2 * di), (int)lround(2 * dj), ILSA_CELL_CHANNEL)) {
+        try_inner(s, seed, i, j, n, (int)lround(di), (int)lround(dj), ILSA_CELL_SURVEY);
+    }
+}
+
+/* Distance along the ray from a cell's centre to its k-th next edge, on one axis. */
+static double edge_distance(double direction, double size, int k) {
+    return direction != 0 ? (k + 0.5) * size / fabs(direction) : INFINITY;
+}
+
+/* Notes the jump between two cells on the ray; height is of the stress nearer to the front. */
+static void note_jump(const ilsa_solver *s, front_seed *seed, double depth, int ahead, int behind) {
+    double height = (s->sigma[ahead] - s->sigma[behind]) / s->material.E_prime;
+    if (height != 0 && seed->jumps < FRONT_JUMPS) {
+        seed->jump[seed->jumps++] = (stress_jump){depth, height};
+    }
+}
+
+/*
+ * The jumps of the stress from the centre of (i, j) along n for a length; sign 1: towards the
+ * front, -1: away from it.
+ */
+static void find_jumps(const ilsa_solver *s, front_seed *seed, int i, int j, vector n, int sign,
+                       double length) {
+    int a = i, b = j, step_x = n.x * sign > 0 ? 1 : -1, step_y = n.y * sign > 0 ? 1 : -1;
+    for (int kx = 0, ky = 0;;) {
+        double to_x = edge_distance(n.x, s->mesh.dx, kx), to_y = edge_distance(n.y, s->mesh.dy, ky);
+        double next = fmin(to_x, to_y);
+        int from = b * s->mesh.nx + a;
+        kx += to_x == next;
+        ky += to_y == next;
+        a += to_x == next ? step_x : 0;
+        b += to_y == next ? step_y : 0;
+        if (!(next < length) || !on_mesh(s, a, b)) {
+            return;
+        }
+        int to = b * s->mesh.nx + a;
+        note_jump(s, seed, -sign * next, sign > 0 ? to : from, sign > 0 ? from : to);
+    }
+}
+
+/* The nearest behind the cell count first; in front, those that the step may reach. */
+static void set_jumps(const ilsa_solver *s, front_seed *seed, int i, int j, vector n) {
+    seed->jumps = 0;
+    if (n.x != 0 || n.y != 0) {
+        double cell = s->mesh.dx * fabs(n.x) + s->mesh.dy * fabs(n.y);
+        find_jumps(s, seed, i, j, n, 1, seed->s0 + ILSAI_ADVANCE_MAX * seed->h);
+        find_jumps(s, seed, i, j, n, -1, ILSAI_JUMP_REACH * cell);
+    }
+}
+
+void ilsai_shape_set(const ilsa_solver *s, front_seed *seeds, int count) {
+    int varies = ilsai_stress_varies(s->stress);
+    for (int k = 0; k < count; k++) {
+        front_seed *seed = &seeds[k];
+        int i = seed->cell % s->mesh.nx, j = seed->cell / s->mesh.nx;
+        vector n = normal_seen(s, i, j);
+        seed->cos_a = fabs(n.x);
+        seed->sin_a = fabs(n.y);
+        seed->curvature = curvature_at(s, i, j, n, seed->s0);
+        find_inner(s, seed, i, j, n);
+        if (varies) {
+            set_jumps(s, seed, i, j, n);
+        }
+    }
+}

@@ -1,0 +1,409 @@
+#include "solve/coupled.h"
+
+#include "base/clock.h"
+#include "solve/gmres.h"
+#include "solve/jacobian.h"
+#include "base/tuning.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct coupled {
+    active cells;
+    flow fluid;
+    jacobian matrix;
+    gmres *krylov;
+    double *rhs, *step;
+    double *shift;  /* change of the source terms at the front in this solve */
+    double *lift;   /* change of the pressures there for the front's move in this solve */
+    double *caught; /* of closed cells: the pressure with which they closed or entered the solve */
+    double *stress; /* of channel cells: the pressure that holds them at their width, (4.7) */
+    int capacity;
+    int response_capacity;
+    int closed;      /* cells that are closed or drain */
+    double residual; /* of the last linear solve, relative */
+};
+
+coupled *ilsai_coupled_create(const ilsa_mesh_def *mesh) {
+    coupled *c = calloc(1, sizeof *c);
+    if (!c) {
+        return NULL;
+    }
+    size_t mesh_cells = (size_t)mesh->nx * (size_t)mesh->ny;
+    c->krylov = ilsai_gmres_create(ILSAI_GMRES_RESTART);
+    c->matrix.width = calloc(mesh_cells, sizeof(double));
+    c->matrix.pressure = calloc(mesh_cells, sizeof(double));
+    if (ilsai_active_create(&c->cells, mesh) != ILSA_OK || !c->krylov || !c->matrix.width ||
+        !c->matrix.pressure) {
+        ilsai_coupled_destroy(&c);
+    }
+    return c;
+}
+
+void ilsai_coupled_destroy(coupled **c) {
+    if (*c) {
+        ilsai_active_destroy(&(*c)->cells);
+        ilsai_flow_destroy(&(*c)->fluid);
+        ilsai_jacobian_destroy(&(*c)->matrix);
+        ilsai_gmres_destroy(&(*c)->krylov);
+        free((*c)->rhs);
+        free((*c)->step);
+        free((*c)->shift);
+        free((*c)->lift);
+        free((*c)->stress);
+        free((*c)->caught);
+        free(*c);
+        *c = NULL;
+    }
+}
+
+int ilsai_coupled_unknowns(const coupled *c) {
+    return c->cells.count;
+}
+
+static ilsa_status reserve(coupled *c, int count) {
+    if (ilsai_flow_reserve(&c->fluid, count) != ILSA_OK ||
+        ilsai_gmres_reserve(c->krylov, (size_t)count) != ILSA_OK) {
+        return ILSA_ERR_MEMORY;
+    }
+    double **arrays[] = {&c->rhs,    &c->step,   &c->shift,      &c->lift,
+                         &c->stress, &c->caught, &c->matrix.edge};
+    size_t capacity = (size_t)count + (size_t)count / 2 + 64;
+    for (size_t k = 0; count > c->capacity && k < sizeof arrays / sizeof *arrays; k++) {
+        double *fresh = realloc(*arrays[k], capacity * sizeof *fresh);
+        if (!fresh) {
+            return ILSA_ERR_MEMORY;
+        }
+        *arrays[k] = fresh;
+    }
+    c->capacity = count > c->capacity ? (int)capacity : c->capacity;
+    return ILSA_OK;
+}
+
+static contact contact_of(coupled *c, const coupled_problem *problem, int late) {
+    return (contact){.field = problem->contact,
+                     .cells = &c->cells,
+                     .old = problem->width_old,
+                     .shift = c->shift,
+                     .stress = c->stress,
+                     .caught = c->caught,
+                     .width = problem->width,
+                     .pressure = problem->pressure,
+                     .late = late};
+}
+
+/* A loop over the active cells. */
+typedef struct loop {
+    coupled *c;
+    const coupled_problem *problem;
+} loop;
+
+static void share_cells(team_function *function, coupled *c, const coupled_problem *problem) {
+    loop l = {c, problem};
+    ilsai_team_run(problem->threads, function, &l, c->cells.count, ILSAI_SHARE_CELLS);
+}
+
+static void add_pressures(void *context, int first, int end) {
+    coupled *c = ((const loop *)context)->c;
+    const coupled_problem *problem = ((const loop *)context)->problem;
+    for (int k = first; k < end; k++) {
+        int cell = c->cells.cell[k];
+        if (c->cells.unknown[k] != UNKNOWN_PRESSURE) {
+            c->stress[k] = problem->sigma[cell] + c->matrix.pressure[cell] +
+                           c->matrix.edge[k] * problem->width[cell] + c->lift[k];
+        }
+        if (c->cells.unknown[k] < UNKNOWN_PRESSURE) {
+            problem->pressure[cell] = c->stress[k];
+        }
+    }
+}
+
+void ilsai_coupled_pressure(coupled *c, const coupled_problem *problem, coupled_counts *counts) {
+    box part = ilsai_box_fold(problem->g, &c->cells.footprint);
+    double start = ilsai_clock();
+    size_t corner = (size_t)ilsai_grid_cell(problem->g, part.x0, part.y0);
+    ilsai_elasticity_multiply(problem->e, problem->width + corner, c->matrix.pressure + corner,
+                              (size_t)problem->g->nx);
+    counts->seconds_product += ilsai_clock() - start;
+    counts->products++;
+    share_cells(add_pressures, c, problem);
+}
+
+static void balance_volumes(void *context, int first, int end) {
+    const coupled *c = ((const loop *)context)->c;
+    const coupled_problem *problem = ((const loop *)context)->problem;
+    for (int k = first; k < end; k++) {
+        int cell = c->cells.cell[k];
+        double gain = ilsai_flow_gain_of(&c->fluid, &c->cells, problem->pressure, k);
+        double source = problem->gain[cell] + c->shift[k];
+        source += problem->contact.relief ? problem->contact.relief[cell] : 0;
+        c->rhs[k] = gain + (source - (problem->width[cell] - problem->width_old[cell]));
+        if (c->cells.unknown[k] == UNKNOWN_CONTACT) {
+            c->rhs[k] -= ilsai_jacobian_without_width(&c->matrix, k) *
+                         (problem->pressure[cell] - c->caught[k]);
+        }
+    }
+}
+
+/* rhs = -(w - w_old - dt A(w) p - S), (4.4). */
+static void set_rhs(coupled *c, const coupled_problem *problem) {
+    ilsai_flow_set(&c->fluid, &c->cells, problem->g, problem->width, problem->width_old,
+                   problem->pressure, problem->dt / problem->mu_prime);
+    share_cells(balance_volumes, c, problem);
+}
+
+static ilsa_status solve_iterative(coupled *c, coupled_counts *counts) {
+    ilsa_status status = ilsai_jacobian_set_preconditioner(&c->matrix);
+    if (status != ILSA_OK) {
+        return status;
+    }
+    gmres_result result = ilsai_gmres_solve(
+        c->krylov, (size_t)c->cells.count, ilsai_jacobian_multiply, ilsai_jacobian_precondition,
+        &c->matrix, c->rhs, c->step, c->closed > 0 ? ILSAI_GMRES_CONTACT : ILSAI_GMRES_TOLERANCE,
+        ILSAI_GMRES_ITERATIONS);
+    counts->krylov += result.iterations;
+    c->residual = result.residual;
+    return result.converged ? ILSA_OK : ILSA_STEP_REJECTED;
+}
+
+/*
+ * The largest part of the Newton step, at most 1, that leaves every width positive; the cells that
+ * are nearly closed have contact to see to that.
+ */
+static double step_length(const coupled *c, const coupled_problem *problem) {
+    double length = 1, nearly = ILSAI_NEARLY_CLOSED * problem->contact.closure_width;
+    for (int k = 0; k < c->cells.count; k++) {
+        double w = problem->width[c->cells.cell[k]];
+        if (c->cells.unknown[k] == UNKNOWN_WIDTH && w > nearly &&
+            -c->step[k] * length > ILSAI_WIDTH_DROP * w) {
+            length = ILSAI_WIDTH_DROP * w / -c->step[k];
+        }
+    }
+    return length;
+}
+
+/* Changes the unknown of active cell k, and what of the cell answers to the others'. */
+static void move_cell(const coupled *c, const coupled_problem *problem, int k, double length) {
+    int cell = c->cells.cell[k];
+    double delta = length * c->step[k], *width = &problem->width[cell];
+    switch (c->cells.unknown[k]) {
+    case UNKNOWN_WIDTH:
+        *width += delta;
+        c->lift[k] += length * ilsai_jacobian_edge_pressure(&c->matrix, k, c->step);
+        break;
+    case UNKNOWN_LEAK:
+        problem->contact.relief[cell] += delta;
+        break;
+    default:
+        problem->pressure[cell] += delta;
+        delta = length * ilsai_jacobian_tip_width(&c->matrix, k, c->step);
+        *width = fmax(*width + delta, (1 - ILSAI_WIDTH_DROP) * *width);
+    }
+    c->shift[k] += length * ilsai_jacobian_tip_gain(&c->matrix, k, c->step);
+}
+
+/* What a Newton step has done. */
+typedef struct progress {
+    double change; /* the largest of a width, or of what leaks, over the largest width, or NaN */
+    int switched;  /* cells that have closed or opened */
+} progress;
+
+/*
+ * Whether a late solve has gone too far: leak-off beyond its bounds against the largest width, or
+ * the pressure in a closed cell beyond the closure stress against the largest net pressure.
+ */
+static int is_forced(coupled *c, const coupled_problem *problem) {
+    contact faces = contact_of(c, problem, 1);
+    double net = 0, width = 0, excess = 0, violation = 0;
+    for (int k = 0; k < c->cells.count; k++) {
+        int cell = c->cells.cell[k];
+        violation = fmax(violation, ilsai_contact_violation(&faces, k));
+        if (c->cells.unknown[k] == UNKNOWN_WIDTH) {
+            net = fmax(net, fabs(problem->pressure[cell] - problem->sigma[cell]));
+            width = fmax(width, problem->width[cell]);
+        } else if (c->cells.unknown[k] == UNKNOWN_CONTACT) {
+            excess = fmax(excess, problem->pressure[cell] - c->stress[k]);
+        }
+    }
+    return excess > ILSAI_CONTACT_FORCED * net || violation > ILSAI_CONTACT_FORCED * width;
+}
+
+static progress take_step(coupled *c, const coupled_problem *problem, double length, int late) {
+    contact faces = contact_of(c, problem, late);
+    double change = 0, largest = 0, sum = 0;
+    int switched = 0;
+    for (int k = 0; k < c->cells.count; k++) {
+        double delta = length * c->step[k], *width = &problem->width[c->cells.cell[k]];
+        sum += delta;
+        move_cell(c, problem, k, length);
+        if (c->cells.unknown[k] != UNKNOWN_PRESSURE) {
+            largest = *width > largest ? *width : largest;
+        }
+        if (c->cells.unknown[k] < UNKNOWN_PRESSURE) {
+            change = fabs(delta) > change ? fabs(delta) : change;
+            switched += faces.field.state && ilsai_contact_bound(&faces, k);
+        } else if (c->cells.unknown[k] == UNKNOWN_CONTACT) {
+            switched += ilsai_contact_lifts(&faces, k);
+        }
+    }
+    return (progress){isfinite(sum) && largest > 0 ? change / largest : NAN, switched};
+}
+
+/*
+ * The flow into a cell that opens is large for its width until the pressures have met: it would
+ * make Newton's step a negative one, so that the first goes without its answer to the width.
+ */
+static void hold_slopes(const coupled *c, int k) {
+    for (int face = 0; face < GRID_FACES; face++) {
+        int at = GRID_FACES * k + face, other = c->cells.neighbour[at];
+        c->fluid.slope[at] = 0;
+        for (int back = 0; other >= 0 && back < GRID_FACES; back++) {
+            int from = GRID_FACES * other + back;
+            c->fluid.slope[from] *= c->cells.neighbour[from] != k;
+        }
+    }
+}
+
+static void hold_opening(const coupled *c, const coupled_problem *problem) {
+    for (int k = 0; k < c->cells.count; k++) {
+        if (problem->contact.state[c->cells.cell[k]] == CONTACT_OPENING) {
+            hold_slopes(c, k);
+        }
+    }
+}
+
+/* Opens the closed cells that are to open with the widths as they are, and counts the others. */
+static int reopen(coupled *c, const coupled_problem *problem, int late) {
+    contact faces = contact_of(c, problem, late);
+    int opened = 0;
+    c->closed = 0;
+    for (int k = 0; k < c->cells.count; k++) {
+        const unsigned char *unknown = &c->cells.unknown[k];
+        if (*unknown == UNKNOWN_CONTACT && ilsai_contact_lifts(&faces, k)) {
+            ilsai_contact_reopen(&faces, k);
+            opened++;
+        }
+        c->closed += *unknown == UNKNOWN_LEAK || *unknown == UNKNOWN_CONTACT;
+    }
+    return opened;
+}
+
+static int choose_dense(const coupled *c, const coupled_problem *problem) {
+    return problem->linear == ILSA_LINEAR_DENSE ||
+           (problem->linear == ILSA_LINEAR_AUTO && c->cells.count <= ILSAI_DENSE_UNKNOWNS);
+}
+
+/* Error left in the widths after a full Newton step of relative size change. */
+static double error_left(const coupled *c, double change) {
+    return change * (ILSAI_NEWTON_CURVATURE * change + ILSAI_NEWTON_RESIDUAL * c->residual);
+}
+
+/* The influence matrix is made anew where the unknowns are others than in the last solve. */
+static ilsa_status solve_linear(coupled *c, int dense, int others, coupled_counts *counts) {
+    ilsa_status status = dense && others ? ilsai_jacobian_set_influence(&c->matrix) : ILSA_OK;
+    if (status == ILSA_OK) {
+        counts->newton++;
+        status = dense ? ilsai_jacobian_solve_full(&c->matrix, c->rhs, c->step)
+                       : solve_iterative(c, counts);
+    }
+    return status == ILSA_ERR_NUMERIC ? ILSA_STEP_REJECTED : status;
+}
+
+/*
+ * Newton's method; where cells close or open a semi-smooth one: each iteration solves for the
+ * unknowns that their states call for, and leaves the states that its solution calls for.
+ */
+static ilsa_status newton(coupled *c, const coupled_problem *problem, coupled_counts *counts) {
+    int dense = choose_dense(c, problem), left = ILSAI_NEWTON_MAX;
+    progress made = {0, 1};
+    c->residual = 0;
+    for (int k = 0; k < ILSAI_CONTACT_MAX && left > 0; k++) {
+        int late = k >= ILSAI_CONTACT_LATE;
+        ilsai_coupled_pressure(c, problem, counts);
+        made.switched += reopen(c, problem, late);
+        set_rhs(c, problem);
+        if (made.switched > 0 && problem->contact.state) {
+            hold_opening(c, problem);
+        }
+        ilsa_status status = solve_linear(c, dense, made.switched, counts);
+        if (status != ILSA_OK) {
+            return status;
+        }
+        double length = step_length(c, problem);
+        made = take_step(c, problem, length, late);
+        if (isnan(made.change)) {
+            return ILSA_STEP_REJECTED;
+        }
+        if (length == 1 && !made.switched && error_left(c, made.change) <= problem->tolerance) {
+            return late && is_forced(c, problem) ? ILSA_STEP_REJECTED : ILSA_OK;
+        }
+        left -= !made.switched;
+    }
+    return ILSA_STEP_REJECTED;
+}
+
+/* Which active cell has which response. */
+static ilsa_status find_responses(coupled *c, const coupled_problem *problem) {
+    if (c->cells.count > c->response_capacity) {
+        size_t capacity = (size_t)c->cells.count + (size_t)c->cells.count / 2 + 64;
+        int *fresh = realloc(c->matrix.response_of, capacity * sizeof *fresh);
+        if (!fresh) {
+            return ILSA_ERR_MEMORY;
+        }
+        c->matrix.response_of = fresh;
+        c->response_capacity = (int)capacity;
+    }
+    for (int k = 0; k < c->cells.count; k++) {
+        c->matrix.response_of[k] = -1;
+        c->shift[k] = c->lift[k] = 0;
+        c->matrix.edge[k] = problem->edge ? problem->edge[c->cells.cell[k]] : 0;
+    }
+    for (int r = 0; r < problem->response_count; r++) {
+        int k = c->cells.slot[problem->response[r].cell];
+        if (k >= 0) {
+            c->matrix.response_of[k] = r;
+        }
+    }
+    return ILSA_OK;
+}
+
+static ilsa_status set_box(const coupled_problem *problem) {
+    const grid *g = problem->g;
+    box part = ilsai_box_fold(g, &problem->footprint);
+    return ilsai_elasticity_set_box(problem->e, (int)ilsai_box_columns(&part),
+                                    (int)ilsai_box_rows(&part), ilsai_grid_about_x(g),
+                                    ilsai_grid_about_y(g));
+}
+
+ilsa_status ilsai_coupled_solve(coupled *c, const coupled_problem *problem,
+                                coupled_counts *counts) {
+    ilsa_status status =
+        ilsai_active_set(&c->cells, problem->g, &problem->footprint, problem->kind);
+    if (status != ILSA_OK || reserve(c, c->cells.count) != ILSA_OK) {
+        return ILSA_ERR_MEMORY;
+    }
+    if (set_box(problem) != ILSA_OK) {
+        return ILSA_ERR_MEMORY;
+    }
+    c->matrix.g = problem->g;
+    c->matrix.a = &c->cells;
+    c->matrix.f = &c->fluid;
+    c->matrix.e = problem->e;
+    c->matrix.response = problem->response_count > 0 ? problem->response : NULL;
+    if (find_responses(c, problem) != ILSA_OK) {
+        return ILSA_ERR_MEMORY;
+    }
+    if (problem->contact.state) {
+        contact faces = contact_of(c, problem, 0);
+        ilsai_contact_begin(&faces);
+    }
+    c->matrix.threads = c->fluid.threads = problem->threads;
+    ilsai_elasticity_share(problem->e, problem->threads);
+    c->matrix.products = 0;
+    c->matrix.seconds_product = c->matrix.seconds_preconditioner = 0;
+    status = newton(c, problem, counts);
+    counts->products += c->matrix.products;
+    counts->seconds_product += c->matrix.seconds_product;
+    counts->seconds_preconditioner += c->matrix.seconds_preconditioner;
+    return status;
+}

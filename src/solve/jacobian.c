@@ -1,0 +1,469 @@
+#include "solve/jacobian.h"
+
+#include "base/clock.h"
+#include "base/tuning.h"
+#include <cblas.h>
+#include <ilsa/solver.h>
+#include <lapacke.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/*
+ * The spring of a cell, over 1 / C(0, 0): what C^-1 is on average over the waves that a step's flow
+ * does not level out.
+ */
+#define JACOBIAN_SPRING 3.0
+/* What of it holds the pressure of a closed cell, from which fluid hardly moves, to where it was.
+ */
+#define JACOBIAN_SOFT 1e-6
+/* In the preconditioner: the spring of a cell that drains, over all that pulls at its pressure. */
+#define JACOBIAN_STIFF 1e6
+
+void ilsai_jacobian_destroy(jacobian *m) {
+    free(m->width);
+    free(m->pressure);
+    free(m->full);
+    free(m->influence);
+    free(m->pivots);
+    free(m->response_of);
+    free(m->edge);
+    free(m->place);
+    free(m->weight);
+    ilsai_multigrid_destroy(&m->pressures);
+    ilsai_nearfield_destroy(&m->widths);
+    memset(m, 0, sizeof *m);
+}
+
+/* Closed cells answer to nothing. */
+static const tip_response *response_of(const jacobian *m, int k) {
+    int answers = m->a->unknown[k] == UNKNOWN_WIDTH || m->a->unknown[k] == UNKNOWN_PRESSURE;
+    return m->response && answers && m->response_of[k] >= 0 ? &m->response[m->response_of[k]]
+                                                            : NULL;
+}
+
+/* Whether the width of active cell k is an unknown. */
+static int is_free(const jacobian *m, int k) {
+    return m->a->unknown[k] == UNKNOWN_WIDTH;
+}
+
+/* Whether its pressure is, that of a tip cell or a closed one. */
+static int has_pressure(const jacobian *m, int k) {
+    return m->a->unknown[k] >= UNKNOWN_PRESSURE;
+}
+
+/* What a pressure takes of a cell where elasticity is a spring: see JACOBIAN_SPRING. */
+static double spring_of(const jacobian *m) {
+    return JACOBIAN_SPRING / ilsai_elasticity_entry(m->e, 0, 0);
+}
+
+double ilsai_jacobian_without_width(const jacobian *m, int k) {
+    int unknown = m->a->unknown[k];
+    return unknown == UNKNOWN_LEAK      ? -1
+           : unknown == UNKNOWN_CONTACT ? JACOBIAN_SOFT * spring_of(m)
+                                        : 0;
+}
+
+/* Sum of a response's weights times the changes of the widths it answers to. */
+static double respond(const jacobian *m, const tip_response *r, const double *weight,
+                      const double *x) {
+    double sum = 0;
+    for (int p = 0; r && p < r->count; p++) {
+        int slot = m->a->slot[r->from[p]];
+        sum += is_free(m, slot) ? weight[p] * x[slot] : 0;
+    }
+    return sum;
+}
+
+double ilsai_jacobian_tip_width(const jacobian *m, int k, const double *x) {
+    const tip_response *r = response_of(m, k);
+    return r ? respond(m, r, r->width, x) : 0;
+}
+
+double ilsai_jacobian_tip_gain(const jacobian *m, int k, const double *x) {
+    const tip_response *r = response_of(m, k);
+    return r ? respond(m, r, r->gain, x) : 0;
+}
+
+double ilsai_jacobian_edge_pressure(const jacobian *m, int k, const double *x) {
+    const tip_response *r = response_of(m, k);
+    return r ? respond(m, r, r->pressure, x) : 0;
+}
+
+/* A loop over the active cells: what a product or the preconditioner takes and gives. */
+typedef struct loop {
+    jacobian *m;
+    const double *x;
+    double *y;
+} loop;
+
+static void share_cells(team_function *function, jacobian *m, const double *x, double *y) {
+    loop l = {m, x, y};
+    ilsai_team_run(m->threads, function, &l, m->a->count, ILSAI_SHARE_CELLS);
+}
+
+static void set_widths(void *context, int first, int end) {
+    const loop *l = context;
+    const jacobian *m = l->m;
+    for (int k = first; k < end; k++) {
+        m->width[m->a->cell[k]] = is_free(m, k) ? l->x[k] : ilsai_jacobian_tip_width(m, k, l->x);
+    }
+}
+
+static void complete_pressures(void *context, int first, int end) {
+    const loop *l = context;
+    const jacobian *m = l->m;
+    for (int k = first; k < end; k++) {
+        double *pressure = &m->pressure[m->a->cell[k]];
+        if (is_free(m, k)) {
+            *pressure += m->edge[k] * l->x[k] + ilsai_jacobian_edge_pressure(m, k, l->x);
+        } else if (has_pressure(m, k)) {
+            *pressure = l->x[k];
+        }
+    }
+}
+
+/* Pressure changes that the width changes x of the channel cells bring about, and the tip's own. */
+static void apply_elasticity(jacobian *m, const double *x) {
+    share_cells(set_widths, m, x, NULL);
+    double start = ilsai_clock();
+    box part = ilsai_box_fold(m->g, &m->a->footprint);
+    size_t corner = (size_t)ilsai_grid_cell(m->g, part.x0, part.y0);
+    ilsai_elasticity_multiply(m->e, m->width + corner, m->pressure + corner, (size_t)m->g->nx);
+    m->seconds_product += ilsai_clock() - start;
+    m->products++;
+    share_cells(complete_pressures, m, x, NULL);
+}
+
+static void clear_widths(void *context, int first, int end) {
+    const loop *l = context;
+    for (int k = first; k < end; k++) {
+        l->m->width[l->m->a->cell[k]] = 0;
+    }
+}
+
+static void balance_volumes(void *context, int first, int end) {
+    const loop *l = context;
+    const jacobian *m = l->m;
+    const active *a = m->a;
+    for (int k = first; k < end; k++) {
+        double w = m->width[a->cell[k]], from_width = 0;
+        double from_pressure = ilsai_flow_gain_of(m->f, a, m->pressure, k);
+        for (int face = 0; face < GRID_FACES; face++) {
+            int at = GRID_FACES * k + face, other = a->neighbour[at];
+            if (other >= 0) {
+                from_width += m->f->slope[at] * (w + m->width[a->cell[other]]);
+            }
+        }
+        double own = is_free(m, k) ? w : w + ilsai_jacobian_without_width(m, k) * l->x[k];
+        l->y[k] = own - from_width - from_pressure - ilsai_jacobian_tip_gain(m, k, l->x);
+    }
+}
+
+void ilsai_jacobian_multiply(void *context, const double *x, double *y) {
+    jacobian *m = context;
+    apply_elasticity(m, x);
+    share_cells(balance_volumes, m, x, y);
+    share_cells(clear_widths, m, x, NULL);
+}
+
+/* What the self term of active cell k lacks, its own part in the front's move included. */
+static double edge_self(const jacobian *m, int k) {
+    const tip_response *r = response_of(m, k);
+    double sum = m->edge[k];
+    for (int p = 0; r && p < r->count; p++) {
+        sum += r->from[p] == m->a->cell[k] ? r->pressure[p] : 0;
+    }
+    return sum;
+}
+
+static ilsa_status reserve(double **array, size_t *capacity, size_t size) {
+    if (size > *capacity) {
+        size_t grown = size + size / 2;
+        double *fresh = malloc(grown * sizeof *fresh);
+        if (!fresh) {
+            return ILSA_ERR_MEMORY;
+        }
+        free(*array);
+        *array = fresh;
+        *capacity = grown;
+    }
+    return ILSA_OK;
+}
+
+static ilsa_status reserve_pivots(jacobian *m) {
+    size_t size = (size_t)m->a->count;
+    if (size > m->pivot_capacity) {
+        size_t grown = size + size / 2;
+        int *fresh = malloc(grown * sizeof *fresh);
+        if (!fresh) {
+            return ILSA_ERR_MEMORY;
+        }
+        free(m->pivots);
+        m->pivots = fresh;
+        m->pivot_capacity = grown;
+    }
+    return ILSA_OK;
+}
+
+/* ---- Preconditioner ----------------------------------------------------------------------- */
+
+/* The part of a cell on the axis of a folded scene, of its faces across, that is in the fold. */
+static double half_on_axis(int mirror, int count, int at, int first) {
+    return mirror && count % 2 && at == first ? 0.5 : 1;
+}
+
+static ilsa_status reserve_places(jacobian *m) {
+    size_t count = (size_t)m->a->count;
+    if (count > m->place_capacity) {
+        size_t grown = count + count / 2;
+        size_t *place = realloc(m->place, grown * sizeof *place);
+        m->place = place ? place : m->place;
+        double *weight = realloc(m->weight, grown * sizeof *weight);
+        m->weight = weight ? weight : m->weight;
+        if (!place || !weight) {
+            return ILSA_ERR_MEMORY;
+        }
+        m->place_capacity = grown;
+    }
+    return ILSA_OK;
+}
+
+/* Places and weights of the active cells on the rectangle of the preconditioner. */
+static void place_cells(void *context, int first, int end) {
+    jacobian *m = ((const loop *)context)->m;
+    const grid *g = m->g;
+    box part = ilsai_box_fold(g, &m->a->footprint);
+    size_t stride = ilsai_box_columns(&part) + 2;
+    for (int k = first; k < end; k++) {
+        int i = m->a->cell[k] % g->nx, j = m->a->cell[k] / g->nx;
+        m->place[k] = (size_t)(j - part.y0 + 1) * stride + (size_t)(i - part.x0 + 1);
+        m->weight[k] = half_on_axis(g->mirror_x, g->nx, i, g->lo_x) *
+                       half_on_axis(g->mirror_y, g->ny, j, g->lo_y);
+    }
+}
+
+/* The pressure of a cell that drains is as its neighbours' widths have it: no flow changes it. */
+static double pinned(const jacobian *m, int k, double spring) {
+    if (m->a->unknown[k] != UNKNOWN_LEAK) {
+        return ilsai_jacobian_without_width(m, k);
+    }
+    const double *conductance = m->f->conductance + (size_t)GRID_FACES * (size_t)k;
+    double pull = spring;
+    for (int face = 0; face < GRID_FACES; face++) {
+        pull += conductance[face];
+    }
+    return JACOBIAN_STIFF * pull;
+}
+
+static void set_flow(void *context, int first, int end) {
+    jacobian *m = ((const loop *)context)->m;
+    const grid *g = m->g;
+    multigrid_level *l = &m->pressures.level[0];
+    double spring = spring_of(m);
+    for (int k = first; k < end; k++) {
+        const double *conductance = m->f->conductance + (size_t)GRID_FACES * (size_t)k;
+        int i = m->a->cell[k] % g->nx, j = m->a->cell[k] / g->nx;
+        size_t at = m->place[k];
+        l->right[at] = half_on_axis(g->mirror_y, g->ny, j, g->lo_y) * conductance[GRID_RIGHT];
+        l->up[at] = half_on_axis(g->mirror_x, g->nx, i, g->lo_x) * conductance[GRID_UP];
+        l->spring[at] = m->weight[k] * (is_free(m, k) ? spring : pinned(m, k, spring));
+    }
+}
+
+static void set_open_cells(void *context, int first, int end) {
+    jacobian *m = ((const loop *)context)->m;
+    for (int k = first; k < end; k++) {
+        m->widths.open[m->place[k]] = is_free(m, k);
+        m->widths.extra[m->place[k]] = is_free(m, k) ? edge_self(m, k) : 0;
+    }
+}
+
+static void set_near_field(jacobian *m) {
+    nearfield *n = &m->widths;
+    n->mirror_x = m->g->mirror_x ? m->g->nx % 2 : -1;
+    n->mirror_y = m->g->mirror_y ? m->g->ny % 2 : -1;
+    n->self = ilsai_elasticity_entry(m->e, 0, 0);
+    n->beside = ilsai_elasticity_entry(m->e, 1, 0);
+    n->above = ilsai_elasticity_entry(m->e, 0, 1);
+    n->corner = ilsai_elasticity_entry(m->e, 1, 1);
+    share_cells(set_open_cells, m, NULL, NULL);
+}
+
+ilsa_status ilsai_jacobian_set_preconditioner(jacobian *m) {
+    double start = ilsai_clock();
+    box part = ilsai_box_fold(m->g, &m->a->footprint);
+    int nx = (int)ilsai_box_columns(&part), ny = (int)ilsai_box_rows(&part);
+    m->pressures.threads = m->widths.threads = m->threads;
+    if (reserve_places(m) != ILSA_OK || ilsai_multigrid_shape(&m->pressures, nx, ny) != ILSA_OK ||
+        ilsai_nearfield_shape(&m->widths, nx, ny) != ILSA_OK) {
+        return ILSA_ERR_MEMORY;
+    }
+    share_cells(place_cells, m, NULL, NULL);
+    share_cells(set_flow, m, NULL, NULL);
+    ilsai_multigrid_build(&m->pressures);
+    set_near_field(m);
+    m->seconds_preconditioner += ilsai_clock() - start;
+    return ILSA_OK;
+}
+
+static void lay_out(void *context, int first, int end) {
+    const loop *l = context;
+    for (int k = first; k < end; k++) {
+        l->m->pressures.level[0].b[l->m->place[k]] = l->m->weight[k] * l->x[k];
+    }
+}
+
+static void hand_over(void *context, int first, int end) {
+    jacobian *m = ((const loop *)context)->m;
+    for (int k = first; k < end; k++) {
+        size_t at = m->place[k];
+        m->widths.y[at] = is_free(m, k) ? m->pressures.level[0].y[at] : 0;
+    }
+}
+
+static void read_out(void *context, int first, int end) {
+    const loop *l = context;
+    const jacobian *m = l->m;
+    for (int k = first; k < end; k++) {
+        size_t at = m->place[k];
+        double pressure = m->pressures.level[0].y[at];
+        l->y[k] = is_free(m, k) ? m->widths.x[at]
+                  : has_pressure(m, k)
+                      ? pressure
+                      : -m->pressures.level[0].spring[at] / m->weight[k] * pressure;
+    }
+}
+
+/*
+ * The matrix is nearly (d - dt A) C: on pressures C^-1 is a spring d wherever flow does not level
+ * them out. So first pressures by multigrid, then widths by the near field of C; where the pressure
+ * is the unknown it stays, and in cells that drain the spring has taken what leaks less.
+ */
+void ilsai_jacobian_precondition(void *context, const double *x, double *y) {
+    jacobian *m = context;
+    double start = ilsai_clock();
+    share_cells(lay_out, m, x, NULL);
+    ilsai_multigrid_cycle(&m->pressures);
+    share_cells(hand_over, m, NULL, NULL);
+    ilsai_nearfield_solve(&m->widths);
+    share_cells(read_out, m, NULL, y);
+    m->seconds_preconditioner += ilsai_clock() - start;
+}
+
+/* ---- Full matrix -------------------------------------------------------------------------- */
+
+/* C between cells a and b, b's images included. */
+static double folded_entry(const jacobian *m, int a, int b) {
+    int image[4], nx = m->g->nx, cell = m->a->cell[b], here = m->a->cell[a];
+    int count = ilsai_grid_images(m->g, cell % nx, cell / nx, image);
+    double sum = 0;
+    for (int c = 0; c < count; c++) {
+        sum += ilsai_elasticity_entry(m->e, here % nx - image[c] % nx, here / nx - image[c] / nx);
+    }
+    return sum;
+}
+
+/* Adds weights of a response, times value, to a row. */
+static void add_response(const jacobian *m, double *out, const tip_response *r,
+                         const double *weight, double value) {
+    for (int p = 0; r && p < r->count; p++) {
+        int slot = m->a->slot[r->from[p]];
+        out[slot] += is_free(m, slot) ? value * weight[p] : 0;
+    }
+}
+
+/* Adds what the width of an active cell is, times value, to a row. */
+static void add_width(const jacobian *m, double *out, int k, double value) {
+    const tip_response *r = response_of(m, k);
+    if (is_free(m, k)) {
+        out[k] += value;
+    } else {
+        add_response(m, out, r, r ? r->width : NULL, value);
+    }
+}
+
+/*
+ * Where a pressure is the unknown it is, in the full matrix, the pressure over this, a width like
+ * the others: pivots are chosen among the unknowns, and must not depend on units.
+ */
+static double pressure_unit(const jacobian *m) {
+    return ilsai_elasticity_entry(m->e, 0, 0);
+}
+
+/* What the pressure of active cell row is in terms of the unknowns: C with the tips' responses. */
+static void fill_influence_row(jacobian *m, int row, double *out) {
+    const active *a = m->a;
+    memset(out, 0, (size_t)a->count * sizeof *out);
+    if (has_pressure(m, row)) {
+        out[row] = pressure_unit(m);
+        return;
+    }
+    for (int k = 0; k < a->count; k++) {
+        add_width(m, out, k, folded_entry(m, row, k));
+    }
+    if (is_free(m, row)) {
+        const tip_response *own = response_of(m, row);
+        out[row] += m->edge[row];
+        add_response(m, out, own, own ? own->pressure : NULL, 1);
+    }
+}
+
+ilsa_status ilsai_jacobian_set_influence(jacobian *m) {
+    double start = ilsai_clock();
+    size_t n = (size_t)m->a->count, capacity = m->full_capacity;
+    if (reserve(&m->full, &capacity, n * n) != ILSA_OK ||
+        reserve(&m->influence, &m->full_capacity, n * n) != ILSA_OK ||
+        reserve_pivots(m) != ILSA_OK) {
+        return ILSA_ERR_MEMORY;
+    }
+    for (size_t row = 0; row < n; row++) {
+        fill_influence_row(m, (int)row, m->influence + row * n);
+    }
+    m->seconds_preconditioner += ilsai_clock() - start;
+    return ILSA_OK;
+}
+
+/* Row k of the full matrix, stored as a column of the transpose. */
+static void fill_full_row(jacobian *m, int row) {
+    const active *a = m->a;
+    size_t n = (size_t)a->count;
+    double *out = m->full + (size_t)row * n, total = 0, diagonal = 1;
+    memset(out, 0, n * sizeof *out);
+    for (int face = 0; face < GRID_FACES; face++) {
+        int at = GRID_FACES * row + face, other = a->neighbour[at];
+        if (other < 0) {
+            continue;
+        }
+        cblas_daxpy((int)n, -m->f->conductance[at], m->influence + (size_t)other * n, 1, out, 1);
+        add_width(m, out, other, -m->f->slope[at]);
+        diagonal -= m->f->slope[at];
+        total += m->f->conductance[at];
+    }
+    cblas_daxpy((int)n, total, m->influence + (size_t)row * n, 1, out, 1);
+    add_width(m, out, row, diagonal);
+    const tip_response *r = response_of(m, row);
+    add_response(m, out, r, r ? r->gain : NULL, -1);
+    if (!is_free(m, row)) {
+        double unit = has_pressure(m, row) ? pressure_unit(m) : 1;
+        out[row] += unit * ilsai_jacobian_without_width(m, row);
+    }
+}
+
+ilsa_status ilsai_jacobian_solve_full(jacobian *m, const double *b, double *x) {
+    double start = ilsai_clock();
+    int n = m->a->count;
+    for (int row = 0; row < n; row++) {
+        fill_full_row(m, row);
+    }
+    lapack_int info = LAPACKE_dgetrf_work(LAPACK_COL_MAJOR, n, n, m->full, n, m->pivots);
+    memcpy(x, b, (size_t)n * sizeof *x);
+    if (info == 0) {
+        LAPACKE_dgetrs_work(LAPACK_COL_MAJOR, 'T', n, 1, m->full, n, m->pivots, x, n);
+    }
+    for (int k = 0; k < n; k++) {
+        x[k] *= has_pressure(m, k) ? pressure_unit(m) : 1;
+    }
+    m->seconds_preconditioner += ilsai_clock() - start;
+    return info == 0 ? ILSA_OK : ILSA_ERR_NUMERIC;
+}

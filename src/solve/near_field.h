@@ -1,0 +1,33 @@
+/*
+ * Widths from pressures by the near field of the elasticity alone: C cut to its 3 x 3 stencil is
+ * well conditioned on any set of cells, so that a few steps of Chebyshev's iteration all but invert
+ * it. Arrays as in multigrid.h.
+ */
+#ifndef ILSAI_NEAR_FIELD_H
+#define ILSAI_NEAR_FIELD_H
+
+#include "base/thread_pool.h"
+#include <ilsa/status.h>
+#include <stddef.h>
+
+typedef struct nearfield {
+    int nx, ny, stride;
+    int mirror_x, mirror_y; /* -1: none; 0, 1: the cell before the first is the image of this one */
+    double self, beside, above, corner; /* entries of C */
+    double *extra;                      /* added to self, per cell */
+    double *open;                       /* 1 in the cells that take part, 0 elsewhere */
+    double *x, *y;                      /* widths out, pressures in; y is overwritten */
+    double *step;
+    size_t room;
+    team *threads; /* that share the loops, or NULL */
+} nearfield;
+
+void ilsai_nearfield_destroy(nearfield *f);
+
+/* Room for nx by ny cells, all arrays zero. ILSA_ERR_MEMORY. */
+ilsa_status ilsai_nearfield_shape(nearfield *f, int nx, int ny);
+
+/* x from y. Linear in y. */
+void ilsai_nearfield_solve(nearfield *f);
+
+#endif
