@@ -316,7 +316,7 @@ same-answer: $(BIN)/bench_answer ## one answer from gcc and clang, -O0 and -O3, 
 	    $(foreach a,$(ANSWERS),build/$(firstword $(subst :, ,$a))/bin/bench_answer)
 
 # The programs that take valgrind a minute or two at most; `make asan` runs all of them.
-VALGRIND_TESTS = anderson polyline coupled elasticity flow front gmres grid handles multigrid tip_cell
+VALGRIND_TESTS = anderson polyline coupled elasticity lubrication march gmres grid handles multigrid tip_cell
 VALGRIND = valgrind -q --error-exitcode=9 --leak-check=full \
            --show-leak-kinds=definite,indirect,possible \
            --errors-for-leak-kinds=definite,indirect,possible --suppressions=tests/valgrind.supp

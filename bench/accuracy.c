@@ -149,7 +149,7 @@ static ilsa_tip_regime mean_regime(ilsa_solver *solver) {
     const ilsa_survey_point *p;
     size_t count;
     ilsa_tip_regime r = {0};
-    if (ilsa_get_regime(solver, &p, &count) != ILSA_OK)
+    if (ilsa_get_survey(solver, &p, &count) != ILSA_OK)
         return r;
     for (size_t i = 0; i < count; i++) {
         r.N_k += p[i].regime.N_k / (double)count;

@@ -15,7 +15,8 @@
 
 /* The history, a constant velocity; the history with small steps. */
 enum { WAYS = 3, REFERENCE = 2 };
-static const tipcell_velocity velocity[WAYS] = {TIPCELL_HISTORY, TIPCELL_CONSTANT, TIPCELL_HISTORY};
+static const tip_cell_velocity velocity[WAYS] = {TIP_CELL_HISTORY, TIP_CELL_CONSTANT,
+                                                 TIP_CELL_HISTORY};
 static const int refinement[WAYS] = {1, 1, 8};
 
 enum { TIMES = 6 };

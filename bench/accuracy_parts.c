@@ -8,9 +8,9 @@
 
 #include "elastic/elasticity.h"
 #include "front/march.h"
-#include "tip/penny.h"
-#include "step/step.h"
 #include "front/survey.h"
+#include "step/step.h"
+#include "tip/penny.h"
 #include "tip/tip_cell.h"
 
 #include <math.h>
@@ -58,13 +58,13 @@ static double radius_of(const disc *d, int cell) {
 }
 
 /* The front of radius R in a cell, as the march would see it. */
-static tipcell_front front_in(const disc *d, int cell, double R) {
+static tip_cell_front front_in(const disc *d, int cell, double R) {
     const double r = radius_of(d, cell);
-    tipcell_front f = {.cos_a = r > 0 ? fabs(x_of(d, cell)) / r : 1,
-                       .sin_a = r > 0 ? fabs(y_of(d, cell)) / r : 0,
-                       .dx = d->dx,
-                       .dy = d->dy};
-    f.ell = 0.5 * ilsai_front_full(&d->g, f.cos_a, f.sin_a) - (r - R);
+    tip_cell_front f = {.cos_a = r > 0 ? fabs(x_of(d, cell)) / r : 1,
+                        .sin_a = r > 0 ? fabs(y_of(d, cell)) / r : 0,
+                        .dx = d->dx,
+                        .dy = d->dy};
+    f.ell = 0.5 * ilsai_march_full(&d->g, f.cos_a, f.sin_a) - (r - R);
     return f;
 }
 
@@ -84,8 +84,8 @@ static disc make_disc(double cells, double aspect, double R, double R_kind) {
     d.exact = allocate(count, sizeof *d.exact);
     d.width = allocate(count, sizeof *d.width);
     for (int cell = 0; cell < cells_of(&d); cell++) {
-        const tipcell_front f = front_in(&d, cell, R_kind);
-        const double full = ilsai_front_full(&d.g, f.cos_a, f.sin_a);
+        const tip_cell_front f = front_in(&d, cell, R_kind);
+        const double full = ilsai_march_full(&d.g, f.cos_a, f.sin_a);
         if (f.ell <= 1e-4 * ilsai_grid_h(&d.g))
             continue;
         d.kind[cell] = f.ell < full ? ILSA_CELL_TIP : ILSA_CELL_CHANNEL;
@@ -133,28 +133,29 @@ static void print_spread(const spread *s) {
 /* ---- Marching ----------------------------------------------------------------------------- */
 
 /* Marches from exact distances; curved: with the exact curvature of the front. */
-static void march(double cells, double aspect, int curved, spread *s) {
+static void march_exactly(double cells, double aspect, int curved, spread *s) {
     disc d = make_disc(cells, aspect, 1, 1 - 0.5 / cells);
     const box all = {0, d.nx - 1, 0, d.ny - 1};
-    front_seed *seeds = allocate((size_t)cells_of(&d), sizeof *seeds);
+    survey_cell *survey_cells = allocate((size_t)cells_of(&d), sizeof *survey_cells);
     double *level = allocate((size_t)cells_of(&d), sizeof *level);
-    front *f = ilsai_front_create();
+    march *f = ilsai_march_create();
     int count = 0, reached = 0;
     for (int cell = 0; cell < cells_of(&d); cell++)
         if (d.kind[cell] == ILSA_CELL_SURVEY)
-            seeds[count++] = (front_seed){.cell = cell,
-                                          .s = 1 - radius_of(&d, cell),
-                                          .V = 1,
-                                          .w = 1,
-                                          .inner = -1,
-                                          .curvature = curved};
-    if (f && ilsai_front_march(f, &d.g, &all, d.kind, seeds, count, 2 * d.dx, level) == ILSA_OK)
-        for (const front_cell *c = ilsai_front_cells(f, &reached); reached-- > 0; c++)
+            survey_cells[count++] = (survey_cell){.cell = cell,
+                                                  .s = 1 - radius_of(&d, cell),
+                                                  .V = 1,
+                                                  .w = 1,
+                                                  .inner = -1,
+                                                  .curvature = curved};
+    if (f &&
+        ilsai_march_run(f, &d.g, &all, d.kind, survey_cells, count, 2 * d.dx, level) == ILSA_OK)
+        for (const front_cell *c = ilsai_march_cells(f, &reached); reached-- > 0; c++)
             if (c->ell > 0)
                 add(s, &d, c->cell, radius_of(&d, c->cell) - c->T - 1);
-    ilsai_front_destroy(&f);
+    ilsai_march_destroy(&f);
     free(level);
-    free(seeds);
+    free(survey_cells);
     free_disc(&d);
 }
 
@@ -163,8 +164,8 @@ static void marching_row(double cells, double aspect, int curved) {
     double difference = 0;
     for (int k = 0; k < 10; k++) {
         spread one = no_spread;
-        march(cells + 0.1 * k, aspect, curved, &one);
-        march(cells + 0.1 * k, aspect, curved, &s);
+        march_exactly(cells + 0.1 * k, aspect, curved, &one);
+        march_exactly(cells + 0.1 * k, aspect, curved, &s);
         difference += 0.1 * (one.high - one.low);
     }
     printf("| %g | %g | %s |", cells, aspect, curved ? "yes" : "no");
@@ -185,11 +186,11 @@ static void marching(void) {
 
 /* ---- Exact solutions ---------------------------------------------------------------------- */
 
-static radial_solution solution_of(int k) {
+static penny_solution solution_of(int k) {
     const penny_law law = penny_cases[k].law;
     const ilsa_material_def scaled = {1, law.mu_prime, law.K_prime, law.C_prime};
-    radial_solution s;
-    if (ilsai_radial_at_time(&scaled, 1, penny_cases[k].time, &s) != ILSA_OK) {
+    penny_solution s;
+    if (ilsai_penny_at_time(&scaled, 1, penny_cases[k].time, &s) != ILSA_OK) {
         fprintf(stderr, "%s: no solution\n", penny_cases[k].law.name);
         exit(EXIT_FAILURE);
     }
@@ -197,8 +198,8 @@ static radial_solution solution_of(int k) {
 }
 
 /* Mean over a cell around (x, y) of a function of the radius over R, by 64 x 64 midpoints. */
-typedef double of_radius(const radial_solution *s, double rho, double until);
-static double mean_over(const radial_solution *s, of_radius *f, double until, double x, double y,
+typedef double of_radius(const penny_solution *s, double rho, double until);
+static double mean_over(const penny_solution *s, of_radius *f, double until, double x, double y,
                         double dx, double dy) {
     enum { POINTS = 64 };
     double sum = 0;
@@ -211,9 +212,9 @@ static double mean_over(const radial_solution *s, of_radius *f, double until, do
     return sum / (POINTS * POINTS);
 }
 
-static double width_at(const radial_solution *s, double rho, double until) {
+static double width_at(const penny_solution *s, double rho, double until) {
     (void)until;
-    return ilsai_radial_width(s, rho);
+    return ilsai_penny_width(s, rho);
 }
 
 /* ---- Survey cells ------------------------------------------------------------------------- */
@@ -223,18 +224,18 @@ static double width_at(const radial_solution *s, double rho, double until) {
  * one, in parts of it, from the exact mean widths of it and of the cell two cells behind; the step
  * moves the front by STEP cells of size h.
  */
-static double survey_error(const radial_solution *s, double distance, double h, int next_term) {
+static double survey_error(const penny_solution *s, double distance, double h, int next_term) {
     const double depth = 2 * h, from = s->R - distance;
     double width[2] = {mean_over(s, width_at, 0, from, 0, h, h),
                        mean_over(s, width_at, 0, from - depth, 0, h, h)};
     const ilsa_solver solver = {
-        .mesh = {2, 1, h, h}, .asymptote = s->scaled, .trial = {.width = width}};
-    front_seed seed = {.s0 = distance - STEP * h, .h = h, .cos_a = 1, .s = distance};
-    const double dt = s->t - ilsai_radial_arrival(s, 1 - STEP * h / s->R);
-    seed.V = STEP * h / dt;
-    seed.inner = next_term ? 1 : -1;
-    seed.depth = depth;
-    return (ilsai_survey_distance(&solver, &seed, dt) - distance) / s->R;
+        .mesh = {2, 1, h, h}, .tip_material = s->scaled, .trial = {.width = width}};
+    survey_cell survey = {.s0 = distance - STEP * h, .h = h, .cos_a = 1, .s = distance};
+    const double dt = s->t - ilsai_penny_arrival(s, 1 - STEP * h / s->R);
+    survey.V = STEP * h / dt;
+    survey.inner = next_term ? 1 : -1;
+    survey.depth = depth;
+    return (ilsai_survey_distance(&solver, &survey, dt) - distance) / s->R;
 }
 
 static void survey(void) {
@@ -244,7 +245,7 @@ static void survey(void) {
            "cell from the front, in cells; without the next term of the width, with it.\n\n"
            "| case | cells per radius | s = 0.75 | 1 | 1.5 | 2 |\n|---|---|---|---|---|---|\n");
     for (int k = 0; k < PENNY_CASES; k++) {
-        const radial_solution s = solution_of(k);
+        const penny_solution s = solution_of(k);
         for (int n = 5; n <= 40; n *= 2) {
             const double cells = n, h = s.R / cells;
             printf("| %s | %g |", penny_cases[k].law.name, cells);
@@ -258,7 +259,7 @@ static void survey(void) {
 
 /* ---- Elasticity --------------------------------------------------------------------------- */
 
-static disc exact_disc(const radial_solution *s, double cells, double aspect) {
+static disc exact_disc(const penny_solution *s, double cells, double aspect) {
     disc d = make_disc(cells, aspect, s->R, s->R);
     for (int cell = 0; cell < cells_of(&d); cell++)
         if (d.kind[cell] == ILSA_CELL_TIP || d.kind[cell] == ILSA_CELL_SURVEY)
@@ -267,57 +268,58 @@ static disc exact_disc(const radial_solution *s, double cells, double aspect) {
 }
 
 /* Widths of the tip cells: the exact means, or (4.18) with the exact front; 0 elsewhere. */
-static void set_tips(disc *d, const radial_solution *s, int by_formula) {
+static void set_tips(disc *d, const penny_solution *s, int by_formula) {
     for (int cell = 0; cell < cells_of(d); cell++) {
-        const tipcell_front f = front_in(d, cell, s->R);
+        const tip_cell_front f = front_in(d, cell, s->R);
         d->width[cell] = d->kind[cell] != ILSA_CELL_TIP ? 0
                          : by_formula
-                             ? ilsai_tipcell_volume(&s->scaled, s->V, 0, &f) / (d->dx * d->dy)
+                             ? ilsai_tip_cell_volume(&s->scaled, s->V, 0, &f) / (d->dx * d->dy)
                              : d->exact[cell];
     }
 }
 
 /* What the self terms of the survey cells lack, 0 elsewhere. */
-static void find_edges(const disc *d, const radial_solution *s, elasticity *e, double *edge) {
+static void find_edges(const disc *d, const penny_solution *s, elasticity *e, double *edge) {
     for (int cell = 0; cell < cells_of(d); cell++)
         if (d->kind[cell] == ILSA_CELL_SURVEY) {
-            const tipcell_front f = front_in(d, cell, s->R);
+            const tip_cell_front f = front_in(d, cell, s->R);
             const double distance = s->R - radius_of(d, cell);
-            const double w = ilsai_tip_width(&s->scaled, s->V, distance);
-            const edge_front seen = {distance, f.cos_a, f.sin_a,
-                                     ilsai_tip_exponent(&s->scaled, s->V, distance, w)};
-            edge[cell] = ilsai_elasticity_edge(e, &seen).value;
+            const double w = ilsai_asymptote_width(&s->scaled, s->V, distance);
+            const self_term_front seen = {distance, f.cos_a, f.sin_a,
+                                          ilsai_asymptote_exponent(&s->scaled, s->V, distance, w)};
+            edge[cell] = ilsai_elasticity_self_term(e, &seen).value;
         }
 }
 
 /* Pressures from widths: the constant elements and what is added to their self terms. */
 typedef struct stiffness {
     elasticity *e;
-    double *edge;
+    double *self_correction;
 } stiffness;
 
-static stiffness make_stiffness(const disc *d, const radial_solution *s, int completed) {
-    stiffness k = {NULL, allocate((size_t)cells_of(d), sizeof *k.edge)};
+static stiffness make_stiffness(const disc *d, const penny_solution *s, int completed) {
+    stiffness k = {NULL, allocate((size_t)cells_of(d), sizeof *k.self_correction)};
     if (ilsai_elasticity_create(1, d->dx, d->dy, ILSA_PRODUCT_AUTO, &k.e) ||
         ilsai_elasticity_set_box(k.e, d->nx, d->ny, MIRROR_NONE, MIRROR_NONE)) {
         fprintf(stderr, "no elasticity\n");
         exit(EXIT_FAILURE);
     }
     if (completed)
-        find_edges(d, s, k.e, k.edge);
+        find_edges(d, s, k.e, k.self_correction);
     return k;
 }
 
 static void free_stiffness(stiffness *k) {
     ilsai_elasticity_destroy(&k->e);
-    free(k->edge);
+    free(k->self_correction);
 }
 
 /* Pressures in the channel, 0 elsewhere. */
 static void multiply(const disc *d, const stiffness *k, const double *w, double *out) {
     ilsai_elasticity_multiply(k->e, w, out, (size_t)d->nx);
     for (int cell = 0; cell < cells_of(d); cell++)
-        out[cell] = d->kind[cell] < ILSA_CELL_SURVEY ? 0 : out[cell] + k->edge[cell] * w[cell];
+        out[cell] =
+            d->kind[cell] < ILSA_CELL_SURVEY ? 0 : out[cell] + k->self_correction[cell] * w[cell];
 }
 
 static double dot(const double *a, const double *b, int count) {
@@ -351,13 +353,13 @@ static void solve(disc *d, const stiffness *stiff, double *r) {
 }
 
 /* Channel widths from the exact pressures there and the widths of the tip cells. */
-static void open_channel(disc *d, const radial_solution *s, int completed) {
+static void open_channel(disc *d, const penny_solution *s, int completed) {
     double *r = allocate((size_t)cells_of(d), sizeof *r);
     stiffness k = make_stiffness(d, s, completed);
     multiply(d, &k, d->width, r);
     for (int cell = 0; cell < cells_of(d); cell++)
         if (d->kind[cell] >= ILSA_CELL_SURVEY)
-            r[cell] = ilsai_radial_pressure(s, radius_of(d, cell) / s->R) - r[cell];
+            r[cell] = ilsai_penny_pressure(s, radius_of(d, cell) / s->R) - r[cell];
     solve(d, &k, r);
     free_stiffness(&k);
     free(r);
@@ -372,7 +374,7 @@ static double excess_of(const disc *d, int cell) {
 enum { WAYS = 3 };
 
 static void elasticity_row(int k, double cells, double aspect) {
-    const radial_solution s = solution_of(k);
+    const penny_solution s = solution_of(k);
     spread excess[WAYS] = {no_spread, no_spread, no_spread};
     for (int shift = 0; shift < 4; shift++) {
         disc d = exact_disc(&s, cells + 0.25 * shift, aspect);
@@ -423,7 +425,7 @@ static void print_bins(const char *name, spread bins[2][BINS], int diagonal) {
 }
 
 static void by_distance(int k) {
-    const radial_solution s = solution_of(k);
+    const penny_solution s = solution_of(k);
     spread bins[2][BINS] = {{no_spread, no_spread, no_spread, no_spread, no_spread},
                             {no_spread, no_spread, no_spread, no_spread, no_spread}};
     for (int shift = 0; shift < 8; shift++) {
@@ -464,8 +466,8 @@ static void elastic(void) {
 /* ---- Leak-off of channel cells ------------------------------------------------------------ */
 
 /* Leaked per area at rho from the time `from` on, over 2 C'. */
-static double leaked_at(const radial_solution *s, double rho, double from) {
-    const double arrival = ilsai_radial_arrival(s, fmin(rho, 1));
+static double leaked_at(const penny_solution *s, double rho, double from) {
+    const double arrival = ilsai_penny_arrival(s, fmin(rho, 1));
     return sqrt(s->t - arrival) - sqrt(fmax(from - arrival, 0));
 }
 
@@ -474,29 +476,29 @@ typedef struct leakage {
     double exact, centre, mean;
 } leakage;
 
-static leakage leak_of(const disc *d, const radial_solution *s) {
+static leakage leak_of(const disc *d, const penny_solution *s) {
     leakage sum = {0, 0, 0};
     for (int cell = 0; cell < cells_of(d); cell++) {
-        const tipcell_front f = front_in(d, cell, s->R);
-        const double half = 0.5 * ilsai_front_full(&d->g, f.cos_a, f.sin_a), area = d->dx * d->dy;
+        const tip_cell_front f = front_in(d, cell, s->R);
+        const double half = 0.5 * ilsai_march_full(&d->g, f.cos_a, f.sin_a), area = d->dx * d->dy;
         const double r = radius_of(d, cell), C = s->scaled.C_prime;
         if (d->kind[cell] < ILSA_CELL_SURVEY)
             continue;
-        const double entered = ilsai_radial_arrival(s, fmax(r - half, 0) / s->R);
-        const double centre = ilsai_radial_arrival(s, r / s->R);
-        const double filled = ilsai_radial_arrival(s, (r + half) / s->R), age = filled - centre;
-        const double e = fmin(ilsai_tipcell_spread(&f, filled - entered), age);
+        const double entered = ilsai_penny_arrival(s, fmax(r - half, 0) / s->R);
+        const double centre = ilsai_penny_arrival(s, r / s->R);
+        const double filled = ilsai_penny_arrival(s, (r + half) / s->R), age = filled - centre;
+        const double e = fmin(ilsai_tip_cell_spread(&f, filled - entered), age);
         const double dt = s->t - filled;
         sum.exact += 2 * C * area *
                      mean_over(s, leaked_at, filled, x_of(d, cell), y_of(d, cell), d->dx, d->dy);
-        sum.centre += area * ilsai_tipcell_full_leakoff_step(C, age, dt, 0);
-        sum.mean += area * ilsai_tipcell_full_leakoff_step(C, age, dt, e);
+        sum.centre += area * ilsai_tip_cell_full_leakoff_step(C, age, dt, 0);
+        sum.mean += area * ilsai_tip_cell_full_leakoff_step(C, age, dt, e);
     }
     return sum;
 }
 
 static void leakoff(void) {
-    const radial_solution s = solution_of(PENNY_M_TILDE);
+    const penny_solution s = solution_of(PENNY_M_TILDE);
     const double all = s.Q * s.t * (1 - s.efficiency);
     printf("\n### Leak-off of channel cells\n\nM-tilde with the exact front: what leaks from "
            "channel cells after they have filled, its error in %% of all that has leaked.\n\n"

@@ -18,7 +18,7 @@ static int print_fields(const char *scene, const ilsa_solver *solver) {
     const unsigned char *kind;
     if (ilsa_get_mesh_def(solver, &m) || ilsa_get_width(solver, &width) ||
         ilsa_get_pressure(solver, &pressure) || ilsa_get_stress(solver, &sigma) ||
-        ilsa_get_footprint(solver, &kind))
+        ilsa_get_cell_kinds(solver, &kind))
         return 1;
     for (int k = 0; k < m.nx * m.ny; k++) {
         if (kind[k] != ILSA_CELL_EMPTY)
@@ -33,7 +33,7 @@ static int print_front(const char *scene, ilsa_solver *solver) {
     const ilsa_survey_point *survey;
     size_t count;
     double time;
-    if (ilsa_get_regime(solver, &survey, &count) || ilsa_get_time(solver, &time))
+    if (ilsa_get_survey(solver, &survey, &count) || ilsa_get_time(solver, &time))
         return 1;
     for (size_t k = 0; k < count; k++)
         printf("%s,front,%d,%.17g\n", scene, survey[k].cell, survey[k].s);

@@ -61,7 +61,7 @@ static void check_fields(extreme_trial *t) {
     const unsigned char *kind;
     ilsa_mesh_def m;
     if (ilsa_get_mesh_def(t->solver, &m) || ilsa_get_width(t->solver, &width) ||
-        ilsa_get_pressure(t->solver, &pressure) || ilsa_get_footprint(t->solver, &kind)) {
+        ilsa_get_pressure(t->solver, &pressure) || ilsa_get_cell_kinds(t->solver, &kind)) {
         extreme_fail(t, "no fields: %s", ilsa_last_error(NULL));
         return;
     }

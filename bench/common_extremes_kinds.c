@@ -40,7 +40,7 @@ static void grow_uniform(extreme_trial *t) {
     grow_round(t);
     if (!extreme_running(t))
         return;
-    if (ilsa_get_pressure(t->solver, &pressure) || ilsa_get_footprint(t->solver, &kind) ||
+    if (ilsa_get_pressure(t->solver, &pressure) || ilsa_get_cell_kinds(t->solver, &kind) ||
         ilsa_get_mesh_def(t->solver, &m)) {
         extreme_fail(t, "no fields");
         return;

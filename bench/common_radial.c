@@ -109,11 +109,11 @@ static penny interpolate(int phi, double time) {
     return r;
 }
 
-static penny of_solution(const radial_solution *s) {
+static penny of_solution(const penny_solution *s) {
     penny p = {.time = s->t, .R = s->R, .efficiency = s->efficiency};
-    p.width = ilsai_radial_width(s, 0);
-    p.width_half = ilsai_radial_width(s, 0.5);
-    p.pressure_half = ilsai_radial_pressure(s, 0.5);
+    p.width = ilsai_penny_width(s, 0);
+    p.width_half = ilsai_penny_width(s, 0.5);
+    p.pressure_half = ilsai_penny_pressure(s, 0.5);
     return p;
 }
 
@@ -137,19 +137,19 @@ static penny viscosity_vertex(double time) {
 penny radial_reference(penny_law law, double time) {
     const ilsa_material_def scaled = {1, law.mu_prime, law.K_prime, law.C_prime};
     const int phi = phi_of(law);
-    radial_solution s;
+    penny_solution s;
     if (phi >= 0 && time >= 2e-6 && time <= 5e5)
         return interpolate(phi, time);
     if (law.mu_prime == 1 && law.K_prime == 0 && law.C_prime == 0)
         return viscosity_vertex(time);
-    check(ilsai_radial_at_time(&scaled, 1, time, &s));
+    check(ilsai_penny_at_time(&scaled, 1, time, &s));
     return of_solution(&s);
 }
 
 double radial_time_of(penny_law law, double R) {
     const ilsa_material_def scaled = {1, law.mu_prime, law.K_prime, law.C_prime};
-    radial_solution s;
-    check(ilsai_radial_at_radius(&scaled, 1, R, &s));
+    penny_solution s;
+    check(ilsai_penny_at_radius(&scaled, 1, R, &s));
     return s.t;
 }
 

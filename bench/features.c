@@ -78,8 +78,8 @@ static double read_state(ilsa_solver *solver, reading what, void *image, size_t 
     if (what == SAVES)
         return (double)ilsa_snapshot_save(solver, image, &room);
     if (what == READS_NOTHING || ilsa_get_mesh_def(solver, &m) || ilsa_get_width(solver, &width) ||
-        ilsa_get_pressure(solver, &pressure) || ilsa_get_footprint(solver, &kind) ||
-        ilsa_get_front(solver, &front, &count) || ilsa_get_regime(solver, &survey, &count) ||
+        ilsa_get_pressure(solver, &pressure) || ilsa_get_cell_kinds(solver, &kind) ||
+        ilsa_get_front(solver, &front, &count) || ilsa_get_survey(solver, &survey, &count) ||
         ilsa_get_summary(solver, &s))
         return 0;
     for (int n = 0; n < m.nx * m.ny; n++)

@@ -10,10 +10,10 @@ enum { POINTS = 4096, PASSES = 25 };
 
 /* Dimensionless: E' = mu' = V = s = 1, so that K_prime and C_prime set the regime. */
 typedef struct point {
-    tip_law law;
+    ilsa_material_def law;
     double K, C, s0, w, dt;
-    tipcell_front front;
-    tipcell_history history;
+    tip_cell_front front;
+    tip_cell_history history;
 } point;
 
 static point points[POINTS];
@@ -31,9 +31,9 @@ static double power_of_10(double low, double high) {
 }
 
 static void make_history(point *p) {
-    ilsai_tipcell_enter(&p->history, 0.0);
+    ilsai_tip_cell_enter(&p->history, 0.0);
     for (int k = 1; k < 8; k++)
-        ilsai_tipcell_record(&p->history, k, p->front.ell * sqrt(k / 7.0));
+        ilsai_tip_cell_record(&p->history, k, p->front.ell * sqrt(k / 7.0));
 }
 
 static void make_points(void) {
@@ -42,12 +42,12 @@ static void make_points(void) {
         const double alpha = 1.5707963 * uniform();
         p->K = i % 3 ? uniform() : 1.0 - power_of_10(-8.0, 0.0);
         p->C = i % 4 ? power_of_10(-4.0, 4.0) : 0.0;
-        p->law = (tip_law){1.0, 1.0, i % 5 ? power_of_10(-2.0, 2.0) : 0.0,
-                           i % 4 ? power_of_10(-3.0, 3.0) : 0.0};
+        p->law = (ilsa_material_def){1.0, 1.0, i % 5 ? power_of_10(-2.0, 2.0) : 0.0,
+                                     i % 4 ? power_of_10(-3.0, 3.0) : 0.0};
         p->dt = power_of_10(-3.0, 1.0);
         p->s0 = 1.0;
-        p->w = ilsai_tip_width(&p->law, 1.0, 1.0 + p->dt);
-        p->front = (tipcell_front){2.0 * uniform(), cos(alpha), sin(alpha), 1.0, 0.8};
+        p->w = ilsai_asymptote_width(&p->law, 1.0, 1.0 + p->dt);
+        p->front = (tip_cell_front){2.0 * uniform(), cos(alpha), sin(alpha), 1.0, 0.8};
         make_history(p);
     }
 }
@@ -57,25 +57,25 @@ static double call_g_delta(const point *p) {
 }
 
 static double call_width(const point *p) {
-    return ilsai_tip_width(&p->law, 1.0, 1.0);
+    return ilsai_asymptote_width(&p->law, 1.0, 1.0);
 }
 
 static double call_moments(const point *p) {
     double M0, M1;
-    ilsai_tip_moments(&p->law, 1.0, 1.0, p->w, &M0, &M1);
+    ilsai_asymptote_moments(&p->law, 1.0, 1.0, p->w, &M0, &M1);
     return M0 + M1;
 }
 
 static double call_distance(const point *p) {
-    return ilsai_tip_distance(&p->law, p->w, p->s0, p->dt).s;
+    return ilsai_asymptote_distance(&p->law, p->w, p->s0, p->dt).s;
 }
 
 static double call_volume(const point *p) {
-    return ilsai_tipcell_volume(&p->law, 1.0, 0.0, &p->front);
+    return ilsai_tip_cell_volume(&p->law, 1.0, 0.0, &p->front);
 }
 
 static double call_leakoff(const point *p) {
-    return ilsai_tipcell_leakoff(1.0, &p->front, &p->history);
+    return ilsai_tip_cell_leakoff(1.0, &p->front, &p->history);
 }
 
 static double nanoseconds(void) {

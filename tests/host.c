@@ -115,7 +115,7 @@ const double *host_trigger(const ilsa_solver *solver) {
 
 const unsigned char *host_kind(const ilsa_solver *solver) {
     const unsigned char *kind = NULL;
-    ilsa_status status = ilsa_get_footprint(solver, &kind);
+    ilsa_status status = ilsa_get_cell_kinds(solver, &kind);
     if (status)
         stop("footprint", status, ilsa_last_error(NULL));
     return kind;

@@ -97,7 +97,7 @@ shown shown_turned(const shown *s, int turn, double **cells) {
 
 static const ilsa_survey_point *survey_of(ilsa_solver *solver, size_t *count) {
     const ilsa_survey_point *points;
-    assert_int_equal(ilsa_get_regime(solver, &points, count), ILSA_OK);
+    assert_int_equal(ilsa_get_survey(solver, &points, count), ILSA_OK);
     return points;
 }
 

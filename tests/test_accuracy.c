@@ -154,7 +154,7 @@ static void start_up(void **unused) {
 
 /* ---- Leak-off where the front changes its velocity ---------------------------------------- */
 
-static ilsa_summary into_barrier(tipcell_velocity velocity, int parts) {
+static ilsa_summary into_barrier(tip_cell_velocity velocity, int parts) {
     ilsa_solver *solver = layer_start(&layer_scenes[LAYER_SYMMETRIC_PHI1], 11);
     assert_non_null(solver);
     solver->velocity = velocity;
@@ -170,9 +170,9 @@ static ilsa_summary into_barrier(tipcell_velocity velocity, int parts) {
  */
 static void velocity_changes(void **unused) {
     (void)unused;
-    const ilsa_summary small = into_barrier(TIPCELL_HISTORY, 8);
-    const ilsa_summary usual = into_barrier(TIPCELL_HISTORY, 1);
-    const ilsa_summary constant = into_barrier(TIPCELL_CONSTANT, 1);
+    const ilsa_summary small = into_barrier(TIP_CELL_HISTORY, 8);
+    const ilsa_summary usual = into_barrier(TIP_CELL_HISTORY, 1);
+    const ilsa_summary constant = into_barrier(TIP_CELL_CONSTANT, 1);
     const double off = usual.volume_leaked / small.volume_leaked - 1;
     const double far = constant.volume_leaked / small.volume_leaked - 1;
     print_message("leaked by 150 s: %+.2f %%, by a constant velocity %+.2f %%; efficiency %+.4f, "

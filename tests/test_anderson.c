@@ -1,6 +1,6 @@
 /* Anderson acceleration on fixed points that are known. */
-#include "solve/anderson.h"
 #include "failing.h"
+#include "solve/anderson.h"
 
 #include <math.h>
 #include <setjmp.h>

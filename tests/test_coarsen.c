@@ -1,6 +1,6 @@
 /* The state on cells twice as large: nothing lost, and the fracture goes on as it did. */
-#include "csv.h"
 #include "base/error.h"
+#include "csv.h"
 #include "host.h"
 #include "step/state.h"
 
@@ -200,7 +200,7 @@ static void trigger_times_are_interpolated(void **unused) {
 
 /* Knots between the ends of a path, which must lie near the path of constant velocity. */
 static int inner_knots(const ilsa_solver *solver, const tip_record *record) {
-    const tipcell_history *h = &record->history;
+    const tip_cell_history *h = &record->history;
     double V = solver->field.speed[record->cell];
     int last = h->count - 1;
     for (int k = 1; k < last; k++) {
@@ -219,8 +219,8 @@ static void velocity_histories_are_kept(void **unused) {
         int tips = 0, compared = 0, kept = 0;
         for (int k = 0; k < p.coarsened->tips.count; k++) {
             const tip_record *a = &p.coarsened->tips.at[k];
-            const tip_record *b = ilsai_tip_records_find(&p.direct->tips, a->cell);
-            const tipcell_history *h = &a->history;
+            const tip_record *b = ilsai_asymptote_records_find(&p.direct->tips, a->cell);
+            const tip_cell_history *h = &a->history;
             assert_int_equal(p.coarsened->field.kind[a->cell], ILSA_CELL_TIP);
             assert_true(k == 0 || a->cell > p.coarsened->tips.at[k - 1].cell);
             assert_true(h->count >= 2 && h->ell[0] == 0 && h->t[h->count - 1] == time);

@@ -1,10 +1,10 @@
 /* The coupled system (4.4) to (4.8): its Newton matrix and its solution, against residuals worked
  * out cell by cell on the unfolded mesh with the kernel summed directly. */
-#include "solve/coupled.h"
+#include "base/tuning.h"
 #include "failing.h"
+#include "solve/coupled.h"
 #include "solve/gmres.h"
 #include "solve/jacobian.h"
-#include "base/tuning.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -42,11 +42,11 @@ typedef struct scene {
     size_t cells;
     double E_prime, mu_prime, dt;
     unsigned char *kind;
-    double *width, *width_old, *pressure, *sigma, *gain;
+    double *width, *width_old, *pressure, *sigma, *source_term;
     double *kernel; /* |i|, |j| */
     box footprint;
-    tip_response *response; /* none unless a test adds them */
-    int response_count;
+    sensitivity *sensitivity; /* none unless a test adds them */
+    int sensitivity_count;
     elasticity *e;
     coupled *c;
 } scene;
@@ -90,7 +90,8 @@ static void fill_kinds(scene *s, uint64_t salt) {
         s->width[cell] = wet ? w * (1.05 + 0.05 * noise(s, cell, salt + 2)) : 0;
         s->pressure[cell] = 0.4 + 0.1 * noise(s, cell, salt + 3);
         s->sigma[cell] = 0.05 + 0.05 * noise(s, cell, salt + 4);
-        s->gain[cell] = 0.03 * exp(-20 * (x * x + y * y)) - 0.001 * (1 + noise(s, cell, salt + 5));
+        s->source_term[cell] =
+            0.03 * exp(-20 * (x * x + y * y)) - 0.001 * (1 + noise(s, cell, salt + 5));
     }
 }
 
@@ -106,7 +107,7 @@ static scene make_scene(int nx, int ny, int mirror, int folded, uint64_t salt) {
     s.width_old = zeros(s.cells);
     s.pressure = zeros(s.cells);
     s.sigma = zeros(s.cells);
-    s.gain = zeros(s.cells);
+    s.source_term = zeros(s.cells);
     s.kernel = zeros(s.cells);
     for (int cell = 0; cell < (int)s.cells; cell++) {
         s.kernel[cell] = s.E_prime * ilsai_kernel(cell % nx, cell / nx, def.dx, def.dy);
@@ -127,9 +128,9 @@ static void free_scene(scene *s) {
     free(s->width_old);
     free(s->pressure);
     free(s->sigma);
-    free(s->gain);
+    free(s->source_term);
     free(s->kernel);
-    free(s->response);
+    free(s->sensitivity);
     ilsai_elasticity_destroy(&s->e);
     ilsai_coupled_destroy(&s->c);
 }
@@ -168,14 +169,14 @@ static double residual_at(const scene *s, const double *width, const double *pre
         double mean = 0.5 * edge + 0.25 * (s->width_old[cell] + s->width_old[other]);
         sum += mean * edge * edge * (pressure[other] - pressure[cell]) / (s->mu_prime * h * h);
     }
-    return width[cell] - s->width_old[cell] - s->dt * sum - s->gain[cell];
+    return width[cell] - s->width_old[cell] - s->dt * sum - s->source_term[cell];
 }
 
-/* The response of a cell's representative, NULL if it has none. */
-static const tip_response *response_of(const scene *s, int cell) {
-    for (int r = 0; r < s->response_count; r++) {
-        if (s->response[r].cell == representative(s, cell)) {
-            return &s->response[r];
+/* The sensitivity of a cell's representative, NULL if it has none. */
+static const sensitivity *sensitivity_of(const scene *s, int cell) {
+    for (int r = 0; r < s->sensitivity_count; r++) {
+        if (s->sensitivity[r].cell == representative(s, cell)) {
+            return &s->sensitivity[r];
         }
     }
     return NULL;
@@ -192,22 +193,22 @@ static int is_representative(const scene *s, int cell) {
 
 /* Every tip cell answers to survey cells around it, every fourth survey cell by its source term. */
 static void add_responses(scene *s) {
-    s->response = calloc(s->cells, sizeof *s->response);
-    assert_non_null(s->response);
+    s->sensitivity = calloc(s->cells, sizeof *s->sensitivity);
+    assert_non_null(s->sensitivity);
     for (int cell = 0; cell < (int)s->cells; cell++) {
         int tip = s->kind[cell] == ILSA_CELL_TIP;
         int full = s->kind[cell] == ILSA_CELL_SURVEY && cell % 4 == 0;
         if (!is_representative(s, cell) || (!tip && !full)) {
             continue;
         }
-        tip_response *r = &s->response[s->response_count++];
+        sensitivity *r = &s->sensitivity[s->sensitivity_count++];
         r->cell = cell;
-        for (int from = 0; from < (int)s->cells && r->count < RESPONSE_PARENTS; from++) {
+        for (int from = 0; from < (int)s->cells && r->count < SENSITIVITY_PARENTS; from++) {
             if (s->kind[from] == ILSA_CELL_SURVEY && is_near(s, from, cell) &&
                 is_representative(s, from)) {
                 r->from[r->count] = from;
                 r->width[r->count] = tip ? 0.1 * (1 + noise(s, from, 21)) : 0;
-                r->gain[r->count++] = -0.02 * (1 + noise(s, from, 22));
+                r->source_term[r->count++] = -0.02 * (1 + noise(s, from, 22));
             }
         }
     }
@@ -216,8 +217,8 @@ static void add_responses(scene *s) {
 /* The Newton matrix */
 
 typedef struct matrix {
-    active a;
-    flow f;
+    unknowns a;
+    lubrication f;
     jacobian m;
 } matrix;
 
@@ -231,10 +232,11 @@ static void make_matrix(scene *s, matrix *at) {
         }
     }
     *at = (matrix){0};
-    assert_int_equal(ilsai_active_create(&at->a, &def), ILSA_OK);
-    assert_int_equal(ilsai_active_set(&at->a, &s->g, b, s->kind), ILSA_OK);
-    assert_int_equal(ilsai_flow_reserve(&at->f, at->a.count), ILSA_OK);
-    ilsai_flow_set(&at->f, &at->a, &s->g, s->width, s->width_old, s->pressure, s->dt / s->mu_prime);
+    assert_int_equal(ilsai_unknowns_create(&at->a, &def), ILSA_OK);
+    assert_int_equal(ilsai_unknowns_set(&at->a, &s->g, b, s->kind), ILSA_OK);
+    assert_int_equal(ilsai_lubrication_reserve(&at->f, at->a.count), ILSA_OK);
+    ilsai_lubrication_set(&at->f, &at->a, &s->g, s->width, s->width_old, s->pressure,
+                          s->dt / s->mu_prime);
     box part = ilsai_box_fold(&s->g, b);
     assert_int_equal(ilsai_elasticity_set_box(s->e, part.x1 - part.x0 + 1, part.y1 - part.y0 + 1,
                                               ilsai_grid_about_x(&s->g), ilsai_grid_about_y(&s->g)),
@@ -242,49 +244,49 @@ static void make_matrix(scene *s, matrix *at) {
     at->m = (jacobian){.g = &s->g, .a = &at->a, .f = &at->f, .e = s->e};
     at->m.width = zeros(s->cells);
     at->m.pressure = zeros(s->cells);
-    at->m.response = s->response;
-    at->m.edge = zeros((size_t)at->a.count);
-    at->m.response_of = malloc((size_t)at->a.count * sizeof *at->m.response_of);
-    assert_non_null(at->m.response_of);
+    at->m.sensitivity = s->sensitivity;
+    at->m.self_correction = zeros((size_t)at->a.count);
+    at->m.sensitivity_of = malloc((size_t)at->a.count * sizeof *at->m.sensitivity_of);
+    assert_non_null(at->m.sensitivity_of);
     for (int k = 0; k < at->a.count; k++) {
-        const tip_response *r = response_of(s, at->a.cell[k]);
-        at->m.response_of[k] = r ? (int)(r - s->response) : -1;
+        const sensitivity *r = sensitivity_of(s, at->a.cell[k]);
+        at->m.sensitivity_of[k] = r ? (int)(r - s->sensitivity) : -1;
     }
 }
 
 static void free_matrix(matrix *at) {
     ilsai_jacobian_destroy(&at->m);
-    ilsai_flow_destroy(&at->f);
-    ilsai_active_destroy(&at->a);
+    ilsai_lubrication_destroy(&at->f);
+    ilsai_unknowns_destroy(&at->a);
 }
 
-/* Weights of a response times the changes of the unknowns. */
-static double answer(const tip_response *r, const double *weight, const active *a,
+/* Weights of a sensitivity times the changes of the unknowns. */
+static double answer(const sensitivity *r, const double *weight, const unknowns *a,
                      const double *x) {
     double sum = 0;
     for (int p = 0; r && p < r->count; p++) {
-        sum += weight[p] * x[a->slot[r->from[p]]];
+        sum += weight[p] * x[a->number[r->from[p]]];
     }
     return sum;
 }
 
 /* The unknowns x as changes over the whole mesh: of widths in channel cells, of tip pressures. */
-static void spread(const scene *s, const active *a, const double *x, double *width,
+static void spread(const scene *s, const unknowns *a, const double *x, double *width,
                    double *pressure) {
     memset(width, 0, s->cells * sizeof *width);
     memset(pressure, 0, s->cells * sizeof *pressure);
     for (int cell = 0; cell < (int)s->cells; cell++) {
-        int slot = a->slot[representative(s, cell)];
-        if (slot >= 0) {
-            const tip_response *r = response_of(s, cell);
-            *(is_channel(s, cell) ? &width[cell] : &pressure[cell]) = x[slot];
+        int number = a->number[representative(s, cell)];
+        if (number >= 0) {
+            const sensitivity *r = sensitivity_of(s, cell);
+            *(is_channel(s, cell) ? &width[cell] : &pressure[cell]) = x[number];
             width[cell] += r && !is_channel(s, cell) ? answer(r, r->width, a, x) : 0;
         }
     }
 }
 
-/* Residual of every active cell with the unknowns changed by t x, C cut beyond reach. */
-static void residual_along(const scene *s, const active *a, const double *x, double t, int reach,
+/* Residual of every numbered cell with the unknowns changed by t x, C cut beyond reach. */
+static void residual_along(const scene *s, const unknowns *a, const double *x, double t, int reach,
                            double *out) {
     double *width = zeros(s->cells), *pressure = zeros(s->cells), *change = zeros(s->cells);
     spread(s, a, x, change, pressure);
@@ -296,9 +298,9 @@ static void residual_along(const scene *s, const active *a, const double *x, dou
         pressure[cell] = s->pressure[cell] + t * pressure[cell];
     }
     for (int k = 0; k < a->count; k++) {
-        const tip_response *r = response_of(s, a->cell[k]);
+        const sensitivity *r = sensitivity_of(s, a->cell[k]);
         out[k] = residual_at(s, width, pressure, a->cell[k]);
-        out[k] -= r ? t * answer(r, r->gain, a, x) : 0;
+        out[k] -= r ? t * answer(r, r->source_term, a, x) : 0;
     }
     free(width);
     free(pressure);
@@ -306,7 +308,7 @@ static void residual_along(const scene *s, const active *a, const double *x, dou
 }
 
 /* Derivative of the residual along x: central differences of two sizes are exact for a quartic. */
-static void derivative(const scene *s, const active *a, const double *x, int reach, double *out) {
+static void derivative(const scene *s, const unknowns *a, const double *x, int reach, double *out) {
     size_t n = (size_t)a->count;
     double *r[4];
     static const double t[] = {-0.2, -0.1, 0.1, 0.2};
@@ -348,13 +350,13 @@ static scene nth_scene(int n, int folded, uint64_t salt) {
 }
 
 /* Largest difference of the product to finite differences, and of the dense solution to x. */
-static void compare_matrix(int responses, double *product, double *dense) {
+static void compare_matrix(int sensitivities, double *product, double *dense) {
     for (int n = 0; n < FOLDS; n++) {
         scene s = nth_scene(n, 1, 5);
         matrix at;
-        if (responses) {
+        if (sensitivities) {
             add_responses(&s);
-            assert_true(s.response_count > 5);
+            assert_true(s.sensitivity_count > 5);
         }
         make_matrix(&s, &at);
         int count = at.a.count;
@@ -390,7 +392,7 @@ static void matrix_with_responses_is_the_derivative(void **state) {
     (void)state;
     double product = 0, dense = 0;
     compare_matrix(1, &product, &dense);
-    print_message("Newton matrix with responses: off by %.2g, solved dense to %.2g\n", product,
+    print_message("Newton matrix with sensitivities: off by %.2g, solved dense to %.2g\n", product,
                   dense);
     assert_true(product < 1e-12 && dense < 1e-10);
 }
@@ -523,9 +525,9 @@ static coupled_problem pose(scene *s, ilsa_linear_solver linear, double toleranc
                              .kind = s->kind,
                              .sigma = s->sigma,
                              .width_old = s->width_old,
-                             .gain = s->gain,
-                             .response = s->response,
-                             .response_count = s->response_count,
+                             .source_term = s->source_term,
+                             .sensitivity = s->sensitivity,
+                             .sensitivity_count = s->sensitivity_count,
                              .width = s->width,
                              .pressure = s->pressure,
                              .dt = s->dt,
@@ -557,7 +559,7 @@ static coupled_counts solve(scene *s, ilsa_linear_solver linear, double toleranc
     return counts;
 }
 
-/* Largest of the residual over all active cells, and of p - sigma - C w, both as parts of the
+/* Largest of the residual over all numbered cells, and of p - sigma - C w, both as parts of the
  * largest width and pressure. */
 static double worst_residual(const scene *s) {
     double balance = 0, elastic = 0, w = 0, p = 0;
@@ -620,16 +622,17 @@ static double width_difference(const scene *s, const scene *truth) {
     return relative_difference((int)s->cells, s->width, truth->width);
 }
 
-/* Tip widths and source terms end where the responses say, and every cell balances with them. */
+/* Tip widths and source terms end where the sensitivities say, and every cell balances with them.
+ */
 static double worst_with_responses(const scene *s, const scene *before) {
     double worst = 0;
     for (int cell = 0; cell < (int)s->cells; cell++) {
-        const tip_response *r = response_of(s, cell);
+        const sensitivity *r = sensitivity_of(s, cell);
         double width = 0, gain = 0;
         for (int p = 0; r && p < r->count; p++) {
             double change = s->width[r->from[p]] - before->width[r->from[p]];
             width += r->width[p] * change;
-            gain += r->gain[p] * change;
+            gain += r->source_term[p] * change;
         }
         if (s->kind[cell] == ILSA_CELL_TIP) {
             worst = larger(worst, fabs(s->width[cell] - before->width[cell] - width));
@@ -654,7 +657,7 @@ static void responses_are_followed(void **state) {
         free_scene(&s);
         free_scene(&before);
     }
-    print_message("solution with responses: worst residual %.2g\n", worst);
+    print_message("solution with sensitivities: worst residual %.2g\n", worst);
     assert_true(worst < 1e-9);
 }
 
@@ -668,7 +671,7 @@ static void volume_balances(void **state) {
         for (int cell = 0; cell < (int)s.cells; cell++) {
             if (s.kind[cell] != ILSA_CELL_EMPTY) {
                 stored += s.width[cell] - s.width_old[cell];
-                gained += s.gain[cell];
+                gained += s.source_term[cell];
                 size += s.width[cell];
             }
         }
@@ -711,13 +714,13 @@ static void folded_solution_is_the_unfolded_one(void **state) {
     for (int n = 0; n < 2 * FOLDS; n++) {
         scene folded = nth_scene(n / 2, 1, 60), whole = nth_scene(n / 2, 0, 60);
         solve(&folded, solvers[n % 2], 1e-12);
-        int unknowns = ilsai_coupled_unknowns(folded.c);
+        int count = ilsai_coupled_unknowns(folded.c);
         solve(&whole, ILSA_LINEAR_DENSE, 1e-12);
         worst = larger(worst, width_difference(&folded, &whole));
         worst = larger(worst, pressure_difference(&folded, &whole));
         int parts = (n / 2 & 1 ? 2 : 1) * (n / 2 & 2 ? 2 : 1);
-        assert_true(unknowns * parts >= ilsai_coupled_unknowns(whole.c));
-        assert_true(parts == 1 || unknowns < ilsai_coupled_unknowns(whole.c));
+        assert_true(count * parts >= ilsai_coupled_unknowns(whole.c));
+        assert_true(parts == 1 || count < ilsai_coupled_unknowns(whole.c));
         free_scene(&folded);
         free_scene(&whole);
     }
@@ -729,7 +732,7 @@ static void folded_solution_is_the_unfolded_one(void **state) {
 static void fluid_at_rest_stays_at_rest(void **state) {
     (void)state;
     scene s = nth_scene(3, 1, 70), rest = nth_scene(3, 1, 70);
-    memset(s.gain, 0, s.cells * sizeof *s.gain);
+    memset(s.source_term, 0, s.cells * sizeof *s.source_term);
     for (int cell = 0; cell < (int)s.cells; cell++) { /* stress that makes the pressure even */
         int wet = s.kind[cell] != ILSA_CELL_EMPTY;
         s.sigma[cell] = wet ? 3 - elastic_pressure(&rest, rest.width, cell, EVERYWHERE) : 0;
@@ -797,7 +800,7 @@ static void change_units(scene *s, double width, double length, double stress, d
     for (size_t cell = 0; cell < s->cells; cell++) {
         s->width[cell] *= width;
         s->width_old[cell] *= width;
-        s->gain[cell] *= width;
+        s->source_term[cell] *= width;
         s->sigma[cell] *= stress;
         s->pressure[cell] *= stress;
     }
@@ -888,7 +891,7 @@ static void spoil_width(scene *s) {
 }
 
 static void spoil_gain(scene *s) {
-    s->gain[middle(s)] = INFINITY;
+    s->source_term[middle(s)] = INFINITY;
 }
 
 static void spoil_pressure(scene *s) {
@@ -922,7 +925,7 @@ static void no_channel(scene *s) {
 /* More is taken out than there is. */
 static void drained(scene *s) {
     for (size_t cell = 0; cell < s->cells; cell++) {
-        s->gain[cell] = -2 * s->width_old[cell];
+        s->source_term[cell] = -2 * s->width_old[cell];
     }
 }
 
@@ -967,10 +970,10 @@ static void five_cells_by_hand(void **state) {
         for (int n = 0; n < 4; n++) {
             s.kind[tip[n]] = ILSA_CELL_TIP;
             s.width[tip[n]] = 0.3;
-            gain += s.gain[tip[n]] + s.width_old[tip[n]] - 0.3;
+            gain += s.source_term[tip[n]] + s.width_old[tip[n]] - 0.3;
         }
         s.width[24] = 1;
-        gain += s.gain[24];
+        gain += s.source_term[24];
         solve(&s, ILSA_LINEAR_AUTO, 1e-12);
         assert_true(fabs(s.width[24] - old - gain) < 1e-12); /* what is left is the middle's */
         assert_true(worst_residual(&s) < 1e-9);

@@ -89,7 +89,7 @@ static void copy_instant(ilsa_solver *solver, instant *now) {
     size_t count;
     ilsa_mesh_def mesh;
     assert_int_equal(ilsa_get_mesh_def(solver, &mesh), ILSA_OK);
-    assert_int_equal(ilsa_get_regime(solver, &survey, &count), ILSA_OK);
+    assert_int_equal(ilsa_get_survey(solver, &survey, &count), ILSA_OK);
     assert_true(count > 0 && count <= SURVEY_MAX);
     now->s = host_summary(solver);
     copy_line(solver, &now->x, mesh.nx, mesh.ny / 2 * mesh.nx, 1);

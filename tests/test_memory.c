@@ -250,7 +250,7 @@ static ilsa_status read_regime(ilsa_solver *solver, const void *unused, double *
     (void)unused;
     const ilsa_survey_point *points = NULL;
     size_t count = 0;
-    ilsa_status status = ilsa_get_regime(solver, &points, &count);
+    ilsa_status status = ilsa_get_survey(solver, &points, &count);
     *answer = 0;
     for (size_t k = 0; k < count; k++)
         *answer += points[k].s * points[k].w;

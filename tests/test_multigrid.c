@@ -139,8 +139,8 @@ static void nothing_in_dry_cells(void **state) {
 
 /* Widths x, pressures from them by the stencil, widths again; images as mirror says. */
 static double near_error(int nx, int ny, double aspect, int mirror) {
-    nearfield f = {0};
-    assert_int_equal(ilsai_nearfield_shape(&f, nx, ny), ILSA_OK);
+    near_field f = {0};
+    assert_int_equal(ilsai_near_field_shape(&f, nx, ny), ILSA_OK);
     f.mirror_x = f.mirror_y = mirror;
     f.self = ilsai_kernel(0, 0, 1, aspect);
     f.beside = ilsai_kernel(1, 0, 1, aspect);
@@ -169,7 +169,7 @@ static double near_error(int nx, int ny, double aspect, int mirror) {
                               f.above * (x[up] + x[down]) +
                               f.corner * (x[up - 1] + x[up + 1] + x[down - 1] + x[down + 1]));
         }
-    ilsai_nearfield_solve(&f);
+    ilsai_near_field_solve(&f);
     for (int j = 0; j < ny; j++)
         for (int i = 0; i < nx; i++) {
             size_t at = (size_t)(j + 1) * stride + (size_t)i + 1;
@@ -178,7 +178,7 @@ static double near_error(int nx, int ny, double aspect, int mirror) {
             assert_true(f.open[at] > 0 || f.x[at] == 0);
         }
     free(x);
-    ilsai_nearfield_destroy(&f);
+    ilsai_near_field_destroy(&f);
     return error / most;
 }
 

@@ -8,8 +8,8 @@
 
 #include <cmocka.h>
 
-#include "tip/penny.h"
 #include "csv.h"
+#include "tip/penny.h"
 
 #define PI 3.14159265358979323846
 
@@ -28,20 +28,20 @@ static ilsa_material_def law(double mu_prime, double K_prime, double C_prime) {
         .E_prime = 1.0, .mu_prime = mu_prime, .K_prime = K_prime, .C_prime = C_prime};
 }
 
-static radial_solution at_time(ilsa_material_def scaled, double Q, double t) {
-    radial_solution solution;
-    assert_int_equal(ilsai_radial_at_time(&scaled, Q, t, &solution), ILSA_OK);
+static penny_solution at_time(ilsa_material_def scaled, double Q, double t) {
+    penny_solution solution;
+    assert_int_equal(ilsai_penny_at_time(&scaled, Q, t, &solution), ILSA_OK);
     return solution;
 }
 
 /* The scaling of (5.1): phi, tau. */
-static radial_solution at_phi_tau(double phi, double tau) {
+static penny_solution at_phi_tau(double phi, double tau) {
     return at_time(law(1.0, 1.0, pow(phi, 0.25)), 1.0, tau);
 }
 
 /* 2 pi times the integral of field(r) r dr, in panels of equal width in ln(1 - rho). */
-static double area_integral(double (*field)(const radial_solution *, double),
-                            const radial_solution *solution) {
+static double area_integral(double (*field)(const penny_solution *, double),
+                            const penny_solution *solution) {
     const double x[3] = {0.11270166537925831, 0.5, 0.88729833462074169};
     const double weight[3] = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
     const double panel = 1e-3;
@@ -56,8 +56,8 @@ static double area_integral(double (*field)(const radial_solution *, double),
 }
 
 /* What a unit area has lost since the front passed, (2.4). */
-static double leaked(const radial_solution *solution, double rho) {
-    double age = solution->t - ilsai_radial_arrival(solution, rho);
+static double leaked(const penny_solution *solution, double rho) {
+    double age = solution->t - ilsai_penny_arrival(solution, rho);
     return 2.0 * solution->scaled.C_prime * sqrt(fmax(age, 0.0));
 }
 
@@ -66,15 +66,15 @@ static void test_history(void **state) {
     csv_table *table = csv_read("tests/data/radial_history.csv");
     double R = 0, efficiency = 0, V = 0, alpha = 0, center = 0, middle = 0, pressure = 0;
     for (size_t i = 0; i < csv_rows(table); i++) {
-        radial_solution s = at_phi_tau(csv_get(table, i, "phi"), csv_get(table, i, "tau"));
+        penny_solution s = at_phi_tau(csv_get(table, i, "phi"), csv_get(table, i, "tau"));
         keep_worst(&R, relative(s.R, csv_get(table, i, "R")));
         keep_worst(&efficiency, fabs(s.efficiency - csv_get(table, i, "efficiency")));
         keep_worst(&V, relative(s.V, csv_get(table, i, "V")));
         keep_worst(&alpha, fabs(s.alpha - csv_get(table, i, "alpha_dlnR_dlnt")));
-        keep_worst(&center, relative(ilsai_radial_width(&s, 0), csv_get(table, i, "w_center")));
-        keep_worst(&middle, relative(ilsai_radial_width(&s, 0.5), csv_get(table, i, "w_rho0p5")));
+        keep_worst(&center, relative(ilsai_penny_width(&s, 0), csv_get(table, i, "w_center")));
+        keep_worst(&middle, relative(ilsai_penny_width(&s, 0.5), csv_get(table, i, "w_rho0p5")));
         keep_worst(&pressure,
-                   relative(ilsai_radial_pressure(&s, 0.5), csv_get(table, i, "p_rho0p5")));
+                   relative(ilsai_penny_pressure(&s, 0.5), csv_get(table, i, "p_rho0p5")));
     }
     csv_free(table);
     print_message("history: R %.1e, efficiency %.1e, V %.1e, alpha %.1e, w(0) %.1e, w(0.5) %.1e, "
@@ -93,16 +93,16 @@ static void test_history(void **state) {
 static void test_profiles(void **state) {
     (void)state;
     csv_table *table = csv_read("tests/data/radial_profiles.csv");
-    radial_solution s = {0};
+    penny_solution s = {0};
     double inside = 0, rim = 0, pressure = 0, rim_pressure = 0;
     for (size_t i = 0; i < csv_rows(table); i++) {
         double rho = csv_get(table, i, "rho");
         if (i == 0 || rho < csv_get(table, i - 1, "rho")) {
             s = at_phi_tau(csv_get(table, i, "phi"), csv_get(table, i, "tau"));
         }
-        double w = relative(ilsai_radial_width(&s, rho), csv_get(table, i, "Omega"));
-        double p = fabs(ilsai_radial_pressure(&s, rho) - csv_get(table, i, "Pi")) /
-                   ilsai_radial_pressure(&s, 0.5);
+        double w = relative(ilsai_penny_width(&s, rho), csv_get(table, i, "Omega"));
+        double p = fabs(ilsai_penny_pressure(&s, rho) - csv_get(table, i, "Pi")) /
+                   ilsai_penny_pressure(&s, 0.5);
         keep_worst(rho < 0.96 ? &inside : &rim, w);
         keep_worst(rho < 0.96 ? &pressure : &rim_pressure, p);
     }
@@ -119,16 +119,16 @@ static void test_profiles(void **state) {
 static void check_vertex(const char *name, ilsa_material_def scaled, const double scale[3],
                          double tolerance) {
     csv_table *table = csv_read("tests/data/radial_vertices.csv");
-    radial_solution s = at_time(scaled, 1.0, 1.0);
+    penny_solution s = at_time(scaled, 1.0, 1.0);
     double R = 0, w = 0, p = 0;
     for (size_t i = 0; i < csv_rows(table); i++) {
         if (strcmp(csv_text(table, i, "vertex"), name) == 0) {
             double rho = csv_get(table, i, "rho");
             keep_worst(&R, relative(s.R, csv_get(table, i, "gamma") * scale[0]));
-            keep_worst(
-                &w, relative(ilsai_radial_width(&s, rho), csv_get(table, i, "Omega") * scale[1]));
+            keep_worst(&w,
+                       relative(ilsai_penny_width(&s, rho), csv_get(table, i, "Omega") * scale[1]));
             keep_worst(&p,
-                       fabs(ilsai_radial_pressure(&s, rho) / scale[2] - csv_get(table, i, "Pi")));
+                       fabs(ilsai_penny_pressure(&s, rho) / scale[2] - csv_get(table, i, "Pi")));
         }
     }
     csv_free(table);
@@ -159,8 +159,8 @@ static void test_range(void **state) {
         double phi = k < -12 ? 0.0 : pow(10.0, k), radius = 0.0, efficiency = 1.0 + 1e-8;
         for (int n = -9; n <= 9; n += 2) {
             double tau = pow(10.0, n);
-            radial_solution s = at_phi_tau(phi, tau), back;
-            assert_int_equal(ilsai_radial_at_radius(&s.scaled, s.Q, s.R, &back), ILSA_OK);
+            penny_solution s = at_phi_tau(phi, tau), back;
+            assert_int_equal(ilsai_penny_at_radius(&s.scaled, s.Q, s.R, &back), ILSA_OK);
             keep_worst(&inverse, relative(back.t, tau));
             assert_true(back.R == s.R);
             assert_true(s.R > radius);
@@ -185,9 +185,9 @@ static void test_volume(void **state) {
     const double C[] = {0.0, 0.1, 1.0, 10.0}, K[] = {0.0, 1.0};
     double profile = 0.0, balance = 0.0;
     for (int i = 0; i < 8; i++) {
-        radial_solution s = at_time(law(1.0, K[i % 2], C[i / 2]), 2.0, 0.3);
+        penny_solution s = at_time(law(1.0, K[i % 2], C[i / 2]), 2.0, 0.3);
         double volume = s.efficiency * s.Q * s.t;
-        keep_worst(&profile, relative(area_integral(ilsai_radial_width, &s), volume));
+        keep_worst(&profile, relative(area_integral(ilsai_penny_width, &s), volume));
         keep_worst(&balance, relative(volume + area_integral(leaked, &s), s.Q * s.t));
     }
     print_message("volume: of the profile %.1e, balance with leak-off %.1e\n", profile, balance);
@@ -201,20 +201,20 @@ static void test_arrival(void **state) {
     const double C[] = {0.0, 0.1, 1.0, 10.0};
     double worst = 0.0;
     for (int i = 0; i < 4; i++) {
-        radial_solution s = at_time(law(1.0, 1.0, C[i]), 1.0, 5.0), earlier;
+        penny_solution s = at_time(law(1.0, 1.0, C[i]), 1.0, 5.0), earlier;
         double last = 0.0;
         for (int k = 1; k < 100; k++) {
-            double t = ilsai_radial_arrival(&s, 0.01 * k);
+            double t = ilsai_penny_arrival(&s, 0.01 * k);
             assert_true(t > last && t < s.t);
             last = t;
         }
         for (int k = 1; k < 10; k++) {
-            ilsai_radial_at_radius(&s.scaled, s.Q, 0.1 * k * s.R, &earlier);
-            keep_worst(&worst, fabs(ilsai_radial_arrival(&s, 0.1 * k) - earlier.t) / s.t);
+            ilsai_penny_at_radius(&s.scaled, s.Q, 0.1 * k * s.R, &earlier);
+            keep_worst(&worst, fabs(ilsai_penny_arrival(&s, 0.1 * k) - earlier.t) / s.t);
         }
-        assert_true(ilsai_radial_arrival(&s, 0.0) == 0.0);
-        assert_true(ilsai_radial_arrival(&s, 1.0) == s.t);
-        assert_true(ilsai_radial_arrival(&s, 1.5) == s.t);
+        assert_true(ilsai_penny_arrival(&s, 0.0) == 0.0);
+        assert_true(ilsai_penny_arrival(&s, 1.0) == s.t);
+        assert_true(ilsai_penny_arrival(&s, 1.5) == s.t);
     }
     print_message("arrival: %.1e of the time\n", worst);
     assert_true(worst < 1e-3);
@@ -229,26 +229,26 @@ static void test_units(void **state) {
     odd.mu_prime *= stress * time;
     odd.K_prime *= stress * sqrt(length);
     odd.C_prime *= length / sqrt(time);
-    radial_solution a = at_time(si, 0.05, 900.0);
-    radial_solution b = at_time(odd, 0.05 * length * length * length / time, 900.0 * time);
+    penny_solution a = at_time(si, 0.05, 900.0);
+    penny_solution b = at_time(odd, 0.05 * length * length * length / time, 900.0 * time);
     double worst = relative(b.R, a.R * length);
     keep_worst(&worst, relative(b.V, a.V * length / time));
     keep_worst(&worst, relative(b.efficiency, a.efficiency));
     for (int k = 0; k < 10; k++) {
         double rho = 0.1 * k;
         keep_worst(&worst,
-                   relative(ilsai_radial_width(&b, rho), ilsai_radial_width(&a, rho) * length));
-        keep_worst(&worst, relative(ilsai_radial_pressure(&b, rho),
-                                    ilsai_radial_pressure(&a, rho) * stress));
+                   relative(ilsai_penny_width(&b, rho), ilsai_penny_width(&a, rho) * length));
+        keep_worst(&worst,
+                   relative(ilsai_penny_pressure(&b, rho), ilsai_penny_pressure(&a, rho) * stress));
     }
     print_message("units: %.1e; R %.4g m, efficiency %.3f, w %.3g m, p %.3g Pa\n", worst, a.R,
-                  a.efficiency, ilsai_radial_width(&a, 0), ilsai_radial_pressure(&a, 0.5));
+                  a.efficiency, ilsai_penny_width(&a, 0), ilsai_penny_pressure(&a, 0.5));
     assert_true(worst < 1e-9);
 }
 
 static void test_repeats(void **state) {
     (void)state;
-    radial_solution a = at_phi_tau(1e-2, 3.0), b = at_phi_tau(1e-2, 3.0);
+    penny_solution a = at_phi_tau(1e-2, 3.0), b = at_phi_tau(1e-2, 3.0);
     assert_memory_equal(&a.log_width, &b.log_width, sizeof a.log_width);
     assert_memory_equal(&a.pressure, &b.pressure, sizeof a.pressure);
     assert_true(a.R == b.R && a.efficiency == b.efficiency);
@@ -257,17 +257,17 @@ static void test_repeats(void **state) {
 /* At the source, at the rim, and past it. */
 static void test_ends(void **state) {
     (void)state;
-    radial_solution s = at_phi_tau(1e-2, 1.0);
-    assert_true(isfinite(ilsai_radial_pressure(&s, 0.0)));
-    assert_true(ilsai_radial_pressure(&s, 0.0) > ilsai_radial_pressure(&s, 0.1));
-    assert_true(isfinite(ilsai_radial_pressure(&s, 1.0 - 1e-15)));
-    assert_true(ilsai_radial_pressure(&s, 1.0) == ilsai_radial_pressure(&s, 1.0 - 1e-15));
-    assert_true(ilsai_radial_width(&s, 1.0 - 1e-15) > 0.0);
-    assert_true(ilsai_radial_width(&s, 1.0) == 0.0);
-    assert_true(ilsai_radial_width(&s, 2.0) == 0.0);
-    double last = ilsai_radial_width(&s, 0.0);
+    penny_solution s = at_phi_tau(1e-2, 1.0);
+    assert_true(isfinite(ilsai_penny_pressure(&s, 0.0)));
+    assert_true(ilsai_penny_pressure(&s, 0.0) > ilsai_penny_pressure(&s, 0.1));
+    assert_true(isfinite(ilsai_penny_pressure(&s, 1.0 - 1e-15)));
+    assert_true(ilsai_penny_pressure(&s, 1.0) == ilsai_penny_pressure(&s, 1.0 - 1e-15));
+    assert_true(ilsai_penny_width(&s, 1.0 - 1e-15) > 0.0);
+    assert_true(ilsai_penny_width(&s, 1.0) == 0.0);
+    assert_true(ilsai_penny_width(&s, 2.0) == 0.0);
+    double last = ilsai_penny_width(&s, 0.0);
     for (int k = 1; k <= 1000; k++) {
-        double w = ilsai_radial_width(&s, 1e-3 * k);
+        double w = ilsai_penny_width(&s, 1e-3 * k);
         assert_true(w < last);
         last = w;
     }
@@ -284,22 +284,21 @@ static void test_bad_input(void **state) {
                 continue;
             }
             ilsa_material_def scaled = {v[0], v[1], v[2], v[3]};
-            radial_solution solution, before;
+            penny_solution solution, before;
             memset(&solution, 0x5a, sizeof solution);
             before = solution;
-            assert_int_equal(ilsai_radial_at_time(&scaled, v[4], v[5], &solution), ILSA_ERR_VALUE);
-            assert_int_equal(ilsai_radial_at_radius(&scaled, v[4], v[5], &solution),
-                             ILSA_ERR_VALUE);
+            assert_int_equal(ilsai_penny_at_time(&scaled, v[4], v[5], &solution), ILSA_ERR_VALUE);
+            assert_int_equal(ilsai_penny_at_radius(&scaled, v[4], v[5], &solution), ILSA_ERR_VALUE);
             assert_memory_equal(&solution, &before, sizeof solution);
         }
     }
     ilsa_material_def extreme = law(1e-300, 0.0, 0.0);
-    radial_solution solution;
-    assert_int_equal(ilsai_radial_at_time(&extreme, 1.0, 1e300, &solution), ILSA_ERR_VALUE);
-    assert_int_equal(ilsai_radial_at_radius(&extreme, 1.0, 1e300, &solution), ILSA_ERR_VALUE);
+    penny_solution solution;
+    assert_int_equal(ilsai_penny_at_time(&extreme, 1.0, 1e300, &solution), ILSA_ERR_VALUE);
+    assert_int_equal(ilsai_penny_at_radius(&extreme, 1.0, 1e300, &solution), ILSA_ERR_VALUE);
     /* E' t is below the double range */
     ilsa_material_def soft = {1e-200, 1e-200, 0.0, 0.0};
-    assert_int_equal(ilsai_radial_at_time(&soft, 1.0, 1e-200, &solution), ILSA_ERR_VALUE);
+    assert_int_equal(ilsai_penny_at_time(&soft, 1.0, 1e-200, &solution), ILSA_ERR_VALUE);
 }
 
 int main(void) {

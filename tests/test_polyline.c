@@ -366,18 +366,18 @@ static void bad_calls_are_refused(void **unused) {
     size_t count = 7;
     assert_int_equal(ilsa_get_front(solver, &points, &count), ILSA_ERR_STATE);
     check_message(ilsa_last_error(solver), "ilsa_start_radial");
-    assert_int_equal(ilsa_get_regime(solver, &survey, &count), ILSA_ERR_STATE);
+    assert_int_equal(ilsa_get_survey(solver, &survey, &count), ILSA_ERR_STATE);
     assert_int_equal(ilsa_get_front(NULL, &points, &count), ILSA_ERR_NULL);
     check_message(ilsa_last_error(NULL), "solver");
-    assert_int_equal(ilsa_get_regime(NULL, &survey, &count), ILSA_ERR_NULL);
+    assert_int_equal(ilsa_get_survey(NULL, &survey, &count), ILSA_ERR_NULL);
     assert_int_equal(ilsa_start_radial(solver, 0.9), ILSA_OK);
     assert_int_equal(ilsa_get_front(solver, NULL, &count), ILSA_ERR_NULL);
     check_message(ilsa_last_error(solver), "points");
-    assert_int_equal(ilsa_get_regime(solver, NULL, &count), ILSA_ERR_NULL);
+    assert_int_equal(ilsa_get_survey(solver, NULL, &count), ILSA_ERR_NULL);
     check_message(ilsa_last_error(solver), "points");
     assert_int_equal(ilsa_get_front(solver, &points, NULL), ILSA_ERR_NULL);
     check_message(ilsa_last_error(solver), "count");
-    assert_int_equal(ilsa_get_regime(solver, &survey, NULL), ILSA_ERR_NULL);
+    assert_int_equal(ilsa_get_survey(solver, &survey, NULL), ILSA_ERR_NULL);
     check_message(ilsa_last_error(solver), "count");
     assert_true(!points && !survey && count == 7);
     ilsa_solver_destroy(&solver);
@@ -398,7 +398,7 @@ static void no_memory_is_reported(void **unused) {
         check_message(ilsa_last_error(solver), "no memory");
     }
     allocations_left = 0;
-    ilsa_status status = ilsa_get_regime(solver, &survey, &count);
+    ilsa_status status = ilsa_get_survey(solver, &survey, &count);
     allocations_left = -1;
     assert_int_equal(status, ILSA_ERR_MEMORY);
     assert_true(!points && !survey && count == 7);

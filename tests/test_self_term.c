@@ -2,10 +2,10 @@
  * Constant elements beside the front: the term against other ways to find it, and what it does for
  * penny-shaped fractures whose pressure and width are known.
  */
-#include "elastic/self_term.h"
 #include "elastic/elasticity.h"
-#include "tip/penny.h"
+#include "elastic/self_term.h"
 #include "tip/asymptote.h"
+#include "tip/penny.h"
 
 #include <lapacke.h>
 #include <math.h>
@@ -19,14 +19,14 @@
 
 #define PI 3.14159265358979323846
 
-static edge_front seen(double s, double alpha, double exponent) {
-    return (edge_front){s, fabs(cos(alpha)), fabs(sin(alpha)), exponent};
+static self_term_front seen(double s, double alpha, double exponent) {
+    return (self_term_front){s, fabs(cos(alpha)), fabs(sin(alpha)), exponent};
 }
 
 /* ---- Means -------------------------------------------------------------------------------- */
 
 /* Mean of s_+^lambda over the cell by midpoints. */
-static double mean_by_points(double dx, double dy, const edge_front *f) {
+static double mean_by_points(double dx, double dy, const self_term_front *f) {
     enum { POINTS = 400 };
     double sum = 0;
     for (int k = 0; k < POINTS * POINTS; k++) {
@@ -44,8 +44,9 @@ static void means_of_powers(void **unused) {
     double worst = 0;
     for (size_t a = 0; a < sizeof alpha / sizeof *alpha; a++)
         for (double s = 0.3; s < 3; s *= 1.7) {
-            edge_front f = seen(s, alpha[a], 0.6);
-            worst = fmax(worst, fabs(ilsai_edge_mean(1, 0.5, &f) - mean_by_points(1, 0.5, &f)));
+            self_term_front f = seen(s, alpha[a], 0.6);
+            worst =
+                fmax(worst, fabs(ilsai_self_term_mean(1, 0.5, &f) - mean_by_points(1, 0.5, &f)));
         }
     print_message("means: %.1e off midpoints\n", worst);
     assert_true(worst < 2e-5);
@@ -58,18 +59,19 @@ static void table_gives_the_sum(void **unused) {
     static const double side[][2] = {{1, 1}, {1, 0.5}, {0.3, 0.9}, {2, 0.2}};
     for (size_t k = 0; k < sizeof side / sizeof *side; k++) {
         double dx = side[k][0], dy = side[k][1], worst = 0, slope = 0, far = 0;
-        edge_table table;
-        ilsai_edge_table(&table, dx, dy);
+        self_term_table table;
+        ilsai_self_term_table(&table, dx, dy);
         srand(7);
         for (int n = 0; n < 400; n++) {
-            edge_front f = seen(1, PI / 2 * rand() / RAND_MAX, 0.5 + rand() / (6.0 * RAND_MAX));
+            self_term_front f =
+                seen(1, PI / 2 * rand() / RAND_MAX, 0.5 + rand() / (6.0 * RAND_MAX));
             double full = dx * f.cos_a + dy * f.sin_a;
             f.s = full * (0.5 + 1.5 * rand() / RAND_MAX);
-            edge_term term = ilsai_edge_lookup(&table, &f);
-            worst = fmax(worst, fabs(term.value - ilsai_edge_exact(dx, dy, &f)));
-            edge_front next = f;
+            self_term term = ilsai_self_term_lookup(&table, &f);
+            worst = fmax(worst, fabs(term.value - ilsai_self_term_exact(dx, dy, &f)));
+            self_term_front next = f;
             next.s += 1e-6 * full;
-            double difference = (ilsai_edge_lookup(&table, &next).value - term.value) / 1e-6;
+            double difference = (ilsai_self_term_lookup(&table, &next).value - term.value) / 1e-6;
             slope = fmax(slope, fabs(difference - term.slope * full));
             far = f.s > 1.6 * full ? fmax(far, fabs(term.value)) : far;
         }
@@ -85,11 +87,12 @@ static void table_gives_the_sum(void **unused) {
 static void term_has_no_axes_or_units(void **unused) {
     (void)unused;
     for (double alpha = 0; alpha < 1.6; alpha += 0.19) {
-        edge_front f = seen(0.9, alpha, 0.58), turned = {0.9, f.sin_a, f.cos_a, 0.58}, large = f;
+        self_term_front f = seen(0.9, alpha, 0.58), turned = {0.9, f.sin_a, f.cos_a, 0.58},
+                        large = f;
         large.s *= 1e7;
-        double term = ilsai_edge_exact(1, 0.7, &f);
-        assert_true(fabs(ilsai_edge_exact(0.7, 1, &turned) - term) < 1e-10);
-        assert_true(fabs(ilsai_edge_exact(1e7, 0.7e7, &large) - term) < 1e-10);
+        double term = ilsai_self_term_exact(1, 0.7, &f);
+        assert_true(fabs(ilsai_self_term_exact(0.7, 1, &turned) - term) < 1e-10);
+        assert_true(fabs(ilsai_self_term_exact(1e7, 0.7e7, &large) - term) < 1e-10);
     }
 }
 
@@ -98,19 +101,19 @@ static void term_has_no_axes_or_units(void **unused) {
 /* A circle on cells dx by dy around the origin: E' = 1, radius R. */
 typedef struct circle {
     double dx, dy, R;
-    const radial_solution *solution; /* NULL: uniform pressure 1 */
-    double unit;                     /* R over the radius of the solution */
+    const penny_solution *solution; /* NULL: uniform pressure 1 */
+    double unit;                    /* R over the radius of the solution */
 } circle;
 
 static double width_at(const circle *c, double r) {
     double rho = r / c->R;
     return rho >= 1      ? 0
-           : c->solution ? ilsai_radial_width(c->solution, rho)
+           : c->solution ? ilsai_penny_width(c->solution, rho)
                          : 8 / PI * c->R * sqrt((1 - rho) * (1 + rho));
 }
 
 static double pressure_at(const circle *c, double r) {
-    return c->solution ? ilsai_radial_pressure(c->solution, r / c->R) / c->unit : 1;
+    return c->solution ? ilsai_penny_pressure(c->solution, r / c->R) / c->unit : 1;
 }
 
 typedef struct cell {
@@ -145,9 +148,9 @@ static int list_cells(const circle *c, cell *list) {
 static double exponent_at(const circle *c, double s) {
     if (!c->solution)
         return 0.5;
-    const radial_solution *p = c->solution;
-    double at = s / c->R * p->R, w = ilsai_tip_width(&p->scaled, p->V, at);
-    return ilsai_tip_exponent(&p->scaled, p->V, at, w);
+    const penny_solution *p = c->solution;
+    double at = s / c->R * p->R, w = ilsai_asymptote_width(&p->scaled, p->V, at);
+    return ilsai_asymptote_exponent(&p->scaled, p->V, at, w);
 }
 
 /* Worst error of the full cells' widths beside the front, the tip cells given. */
@@ -179,9 +182,10 @@ static double worst_width(const circle *c, int use_term) {
             matrix[(size_t)a * (size_t)n + (size_t)b] =
                 ilsai_kernel(p->i - q->i, p->j - q->j, c->dx, c->dy);
         }
-        edge_front f = seen(s, atan2(y, x), exponent_at(c, s));
+        self_term_front f = seen(s, atan2(y, x), exponent_at(c, s));
         if (use_term && s < 2.5 * fmax(c->dx, c->dy))
-            matrix[(size_t)a * (size_t)n + (size_t)a] *= 1 + ilsai_edge_exact(c->dx, c->dy, &f);
+            matrix[(size_t)a * (size_t)n + (size_t)a] *=
+                1 + ilsai_self_term_exact(c->dx, c->dy, &f);
     }
     assert_int_equal(LAPACKE_dposv(LAPACK_COL_MAJOR, 'U', n, 1, matrix, n, w, n), 0);
     double worst = 0;
@@ -217,8 +221,8 @@ static void pennies_have_their_widths(void **unused) {
 static void viscous_pennies_have_their_widths(void **unused) {
     (void)unused;
     ilsa_material_def viscous = {1, 1, 0, 0};
-    radial_solution solution;
-    assert_int_equal(ilsai_radial_at_time(&viscous, 1, 1, &solution), ILSA_OK);
+    penny_solution solution;
+    assert_int_equal(ilsai_penny_at_time(&viscous, 1, 1, &solution), ILSA_OK);
     circle c = {1, 1, 15.3, &solution, 15.3 / solution.R};
     double with = worst_width(&c, 1), without = worst_width(&c, 0);
     print_message("viscosity, R = %g: widths %.2f %% off, %.2f %% without\n", c.R, 100 * with,

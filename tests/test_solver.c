@@ -1,7 +1,7 @@
 /* Every function of solver.h: bad input of each kind, then what good input gives. */
+#include "base/tuning.h"
 #include "elastic/elasticity.h"
 #include "host.h"
-#include "base/tuning.h"
 
 #include <float.h>
 #include <math.h>
@@ -707,10 +707,10 @@ static void fields_refuse_bad_calls(void **state) {
     check_field(empty, solver, ilsa_get_stress, "stress");
     check_field(empty, solver, ilsa_get_trigger_time, "trigger");
     const unsigned char *kind = NULL;
-    assert_int_equal(ilsa_get_footprint(NULL, &kind), ILSA_ERR_NULL);
-    assert_int_equal(ilsa_get_footprint(solver, NULL), ILSA_ERR_NULL);
+    assert_int_equal(ilsa_get_cell_kinds(NULL, &kind), ILSA_ERR_NULL);
+    assert_int_equal(ilsa_get_cell_kinds(solver, NULL), ILSA_ERR_NULL);
     check_message(ilsa_last_error(NULL), "kind");
-    assert_int_equal(ilsa_get_footprint(empty, &kind), ILSA_ERR_STATE);
+    assert_int_equal(ilsa_get_cell_kinds(empty, &kind), ILSA_ERR_STATE);
     assert_null(kind);
     ilsa_solver_destroy(&solver);
     ilsa_solver_destroy(&empty);
@@ -820,14 +820,14 @@ static void survey_cells_follow_the_asymptote(void **state) {
     const double *width;
     const unsigned char *kind;
     unsigned char before[61 * 61];
-    assert_int_equal(ilsa_get_footprint(solver, &kind), ILSA_OK);
+    assert_int_equal(ilsa_get_cell_kinds(solver, &kind), ILSA_OK);
     memcpy(before, kind, sizeof before);
     host_steps(solver, 1);
     double worst = 0;
     const ilsa_survey_point *points;
     size_t count;
-    assert_true(!ilsa_get_width(solver, &width) && !ilsa_get_footprint(solver, &kind));
-    assert_int_equal(ilsa_get_regime(solver, &points, &count), ILSA_OK);
+    assert_true(!ilsa_get_width(solver, &width) && !ilsa_get_cell_kinds(solver, &kind));
+    assert_int_equal(ilsa_get_survey(solver, &points, &count), ILSA_OK);
     assert_int_equal(count, host_summary(solver).survey_cells);
     for (size_t k = 0; k < count; k++) {
         const ilsa_survey_point *p = &points[k];

@@ -1,7 +1,7 @@
 /* The physics of a step: what it must conserve, leave alone, mirror and scale. */
-#include "tip/stress_step.h"
 #include "host.h"
 #include "step/state.h"
+#include "tip/stress_step.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -725,7 +725,7 @@ static int slow_cells(ilsa_solver *solver, double part) {
     const ilsa_survey_point *points;
     size_t count;
     int slow = 0;
-    assert_int_equal(ilsa_get_regime(solver, &points, &count), ILSA_OK);
+    assert_int_equal(ilsa_get_survey(solver, &points, &count), ILSA_OK);
     for (size_t k = 0; k < count; k++)
         slow += points[k].V < part * host_summary(solver).V_max;
     return slow;
@@ -752,12 +752,12 @@ static void barriers_hold_the_front(void **unused) {
     assert_true(now.V_max > 0 && now.arrested_cells < now.survey_cells);
     const ilsa_survey_point *points;
     size_t count;
-    assert_int_equal(ilsa_get_regime(solver, &points, &count), ILSA_OK);
+    assert_int_equal(ilsa_get_survey(solver, &points, &count), ILSA_OK);
     for (size_t k = 0; k < count; k++) {
         double s = points[k].s, inside = fabs(points[k].y) - 0.625; /* E' = K' = 1 */
         assert_true(points[k].V >= 0);
         assert_true(points[k].V > 0 || inside < 0 ||
-                    points[k].w <= 1.02 * (sqrt(s) + 2 * ilsai_jump_width(s, inside + s)));
+                    points[k].w <= 1.02 * (sqrt(s) + 2 * ilsai_stress_step_width(s, inside + s)));
         assert_true(points[k].V > 0 || points[k].regime.N_k == 1);
     }
     ilsa_solver_destroy(&solver);
@@ -768,7 +768,7 @@ static double least_moving(ilsa_solver *solver) {
     const ilsa_survey_point *points;
     size_t count;
     double least = INFINITY;
-    assert_int_equal(ilsa_get_regime(solver, &points, &count), ILSA_OK);
+    assert_int_equal(ilsa_get_survey(solver, &points, &count), ILSA_OK);
     for (size_t k = 0; k < count; k++)
         if (points[k].V > 0)
             least = fmin(least, points[k].w / sqrt(points[k].s));

@@ -2,9 +2,9 @@
  * Steps of the far-field stress close behind the front: the width that one adds, against the
  * integral equation that it solves, and what it does for fronts just inside a barrier.
  */
+#include "host.h"
 #include "tip/stress_step.h"
 #include "tip/tip_cell.h"
-#include "host.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -23,7 +23,7 @@
 /* d w / d s = (4 / pi) ln |(s^(1/2) + d^(1/2)) / (s^(1/2) - d^(1/2))|. */
 static double slope(double s, double d) {
     double h = 1e-6 * fabs(s - d);
-    return (ilsai_jump_width(s + h, d) - ilsai_jump_width(s - h, d)) / (2 * h);
+    return (ilsai_stress_step_width(s + h, d) - ilsai_stress_step_width(s - h, d)) / (2 * h);
 }
 
 /*
@@ -53,11 +53,11 @@ static void front_feels_no_jump(void **unused) {
     (void)unused;
     for (double s = 1e-12; s < 1e-3; s *= 10) {
         double first = 4 / PI * 4 / 3 * pow(s, 1.5);
-        assert_true(fabs(ilsai_jump_width(s, 1) / first - 1) < 2 * s + 1e-9);
+        assert_true(fabs(ilsai_stress_step_width(s, 1) / first - 1) < 2 * s + 1e-9);
     }
-    assert_true(ilsai_jump_width(0, 1) == 0 && ilsai_jump_width(1, 0) == 0);
-    assert_true(ilsai_jump_width(-1, 1) == 0 && ilsai_jump_width(1, -1) == 0);
-    assert_true(ilsai_jump_moment(0, 1) == 0 && ilsai_jump_moment(1, -1) == 0);
+    assert_true(ilsai_stress_step_width(0, 1) == 0 && ilsai_stress_step_width(1, 0) == 0);
+    assert_true(ilsai_stress_step_width(-1, 1) == 0 && ilsai_stress_step_width(1, -1) == 0);
+    assert_true(ilsai_stress_step_moment(0, 1) == 0 && ilsai_stress_step_moment(1, -1) == 0);
 }
 
 static void moment_is_the_integral(void **unused) {
@@ -68,9 +68,9 @@ static void moment_is_the_integral(void **unused) {
         enum { POINTS = 20000 };
         double sum = 0;
         for (int i = 0; i < POINTS; i++)
-            sum +=
-                ilsai_jump_width(2.5 * ends[k] * (i + 0.5) / POINTS, 2.5) * 2.5 * ends[k] / POINTS;
-        worst = fmax(worst, fabs(ilsai_jump_moment(2.5 * ends[k], 2.5) / sum - 1));
+            sum += ilsai_stress_step_width(2.5 * ends[k] * (i + 0.5) / POINTS, 2.5) * 2.5 *
+                   ends[k] / POINTS;
+        worst = fmax(worst, fabs(ilsai_stress_step_moment(2.5 * ends[k], 2.5) / sum - 1));
     }
     print_message("jump: moment %.1e off midpoints\n", worst);
     assert_true(worst < 1e-6);
@@ -83,19 +83,19 @@ static void volume_in_a_cell(void **unused) {
     for (double alpha = 0; alpha < 1.6; alpha += 0.31)
         for (double ell = 0.2; ell < 2; ell += 0.35) {
             enum { POINTS = 400 };
-            tipcell_front f = {ell, cos(alpha), fabs(sin(alpha)), 1, 0.7};
+            tip_cell_front f = {ell, cos(alpha), fabs(sin(alpha)), 1, 0.7};
             double sum = 0;
             for (int k = 0; k < POINTS * POINTS; k++) {
                 double x = (k % POINTS + 0.5) / POINTS * f.dx,
                        y = (k / POINTS + 0.5) / POINTS * f.dy;
-                sum += ilsai_jump_width(ell - x * f.cos_a - y * f.sin_a, 0.6);
+                sum += ilsai_stress_step_width(ell - x * f.cos_a - y * f.sin_a, 0.6);
             }
             sum *= f.dx * f.dy / (POINTS * POINTS);
-            worst = fmax(worst, fabs(ilsai_tipcell_jump_volume(0.6, &f) - sum));
+            worst = fmax(worst, fabs(ilsai_tip_cell_step_volume(0.6, &f) - sum));
         }
     print_message("jump: volume in a cell %.1e off midpoints\n", worst);
     assert_true(worst < 1e-3);
-    assert_true(ilsai_tipcell_jump_volume(1, &(tipcell_front){-1, 1, 0, 1, 1}) == 0);
+    assert_true(ilsai_tip_cell_step_volume(1, &(tip_cell_front){-1, 1, 0, 1, 1}) == 0);
 }
 
 /* ---- Fronts just inside a barrier -------------------------------------------------------------

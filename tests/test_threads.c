@@ -2,9 +2,9 @@
  * Threads inside one solver: the team that shares its loops, and that the bits of a step do not
  * depend on how many there are. `make tsan` runs this under ThreadSanitizer.
  */
+#include "base/thread_pool.h"
 #include "failing.h"
 #include "host.h"
-#include "base/thread_pool.h"
 
 #include <pthread.h>
 #include <setjmp.h>
@@ -33,10 +33,10 @@ static void count_turns(void *context, int first, int end) {
         t->times[k]++;
 }
 
-static void check_loop(team *threads, int count, int least) {
+static void check_loop(thread_pool *threads, int count, int least) {
     tally *t = calloc(1, sizeof *t);
     assert_non_null(t);
-    ilsai_team_run(threads, count_turns, t, count, least);
+    ilsai_thread_pool_run(threads, count_turns, t, count, least);
     for (int k = 0; k < MOST; k++)
         if (t->times[k] != (k < count))
             fail_msg("%d turns by %d: turn %d was run %d times", count, least, k, t->times[k]);
@@ -47,13 +47,13 @@ static void every_turn_is_run_once(void **state) {
     (void)state;
     static const int sizes[] = {1, 2, 3, 5, 64};
     for (int s = 0; s < 5; s++) {
-        team *threads = sizes[s] > 1 ? ilsai_team_create(sizes[s]) : NULL;
+        thread_pool *threads = sizes[s] > 1 ? ilsai_thread_pool_create(sizes[s]) : NULL;
         assert_true(threads || sizes[s] == 1);
         for (int count = 0; count < 300; count++)
             check_loop(threads, count, 1);
         for (int least = 1; least < 2 * MOST; least *= 3)
             check_loop(threads, MOST, least);
-        ilsai_team_destroy(&threads);
+        ilsai_thread_pool_destroy(&threads);
         assert_null(threads);
     }
 }
@@ -66,14 +66,14 @@ static void pause_for(long nanoseconds) {
 /* Loops that come while the others look for work, go to sleep and sleep. */
 static void loops_may_come_at_any_time(void **state) {
     (void)state;
-    team *threads = ilsai_team_create(3);
+    thread_pool *threads = ilsai_thread_pool_create(3);
     assert_non_null(threads);
     for (int k = 0; k < 200; k++) {
         check_loop(threads, 40, 1);
         if (k % 2)
             pause_for(k * 20000L);
     }
-    ilsai_team_destroy(&threads);
+    ilsai_thread_pool_destroy(&threads);
 }
 
 /* Sums of one loop are read in the next, each by whoever comes. */
@@ -93,12 +93,12 @@ static void hand_back(void *context, int first, int end) {
     memcpy(c->from + first, c->to + first, (size_t)(end - first) * sizeof *c->from);
 }
 
-static void smooth(chain *c, team *threads) {
+static void smooth(chain *c, thread_pool *threads) {
     for (int k = 0; k < MOST; k++)
         c->from[k] = k % 17;
     for (int k = 0; k < 300; k++) {
-        ilsai_team_run(threads, add_neighbours, c, MOST, 100);
-        ilsai_team_run(threads, hand_back, c, MOST, 100);
+        ilsai_thread_pool_run(threads, add_neighbours, c, MOST, 100);
+        ilsai_thread_pool_run(threads, hand_back, c, MOST, 100);
     }
 }
 
@@ -108,11 +108,11 @@ static void loops_see_what_came_before(void **state) {
     assert_true(alone && shared);
     smooth(alone, NULL);
     for (int size = 2; size <= 4; size++) {
-        team *threads = ilsai_team_create(size);
+        thread_pool *threads = ilsai_thread_pool_create(size);
         assert_non_null(threads);
         smooth(shared, threads);
         assert_memory_equal(alone->from, shared->from, sizeof alone->from);
-        ilsai_team_destroy(&threads);
+        ilsai_thread_pool_destroy(&threads);
     }
     free(alone);
     free(shared);
@@ -120,14 +120,14 @@ static void loops_see_what_came_before(void **state) {
 
 static void a_team_may_end_at_once(void **state) {
     (void)state;
-    team *threads = NULL;
-    ilsai_team_destroy(&threads);
+    thread_pool *threads = NULL;
+    ilsai_thread_pool_destroy(&threads);
     for (int k = 0; k < 50; k++) {
-        threads = ilsai_team_create(2 + k % 5);
+        threads = ilsai_thread_pool_create(2 + k % 5);
         assert_non_null(threads);
         if (k % 3 == 0)
             pause_for(300000);
-        ilsai_team_destroy(&threads);
+        ilsai_thread_pool_destroy(&threads);
     }
 }
 

@@ -23,9 +23,9 @@ static double power_of_10(double low, double high) {
 }
 
 /* Every combination of processes turns up. */
-static tip_law random_law(double decades) {
-    tip_law law = {power_of_10(-decades, decades), power_of_10(-decades, decades),
-                   power_of_10(-decades, decades), power_of_10(-decades, decades)};
+static ilsa_material_def random_law(double decades) {
+    ilsa_material_def law = {power_of_10(-decades, decades), power_of_10(-decades, decades),
+                             power_of_10(-decades, decades), power_of_10(-decades, decades)};
     const double kind = uniform();
     if (kind < 0.1 || (kind >= 0.3 && kind < 0.4))
         law.K_prime = 0.0;
@@ -64,7 +64,7 @@ typedef struct width_errors {
     double w, M0, M1, truth;
 } width_errors;
 
-static void compare_width(const csv_table *table, size_t i, const tip_law *law, double s,
+static void compare_width(const csv_table *table, size_t i, const ilsa_material_def *law, double s,
                           double w_unit, const char *closed, const char *exact,
                           width_errors *worst) {
     double w, M0, M1;
@@ -93,7 +93,7 @@ static void test_width_table(void **state) {
     width_errors worst = {0};
     for (size_t i = 0; i < csv_rows(table); i++) {
         const double root = csv_get(table, i, "s_tilde");
-        const tip_law law = {1.0, 1.0, 1.0, 0.5 * csv_get(table, i, "chi")};
+        const ilsa_material_def law = {1.0, 1.0, 1.0, 0.5 * csv_get(table, i, "chi")};
         compare_width(table, i, &law, root * root, root, "w_tilde_gdelta", "w_tilde", &worst);
     }
     report_width("tip_w.csv", csv_rows(table), worst);
@@ -106,14 +106,14 @@ static void test_width_table_without_toughness(void **state) {
     width_errors worst = {0};
     for (size_t i = 0; i < csv_rows(table); i++) {
         const double root = csv_get(table, i, "xi");
-        const tip_law law = {1.0, 1.0, 0.0, 0.5};
+        const ilsa_material_def law = {1.0, 1.0, 0.0, 0.5};
         compare_width(table, i, &law, root * root, root, "omega_gdelta", "omega", &worst);
     }
     report_width("tip_mmt.csv", csv_rows(table), worst);
     csv_free(table);
 }
 
-static double width_of(const tip_law *law, double V, double s) {
+static double width_of(const ilsa_material_def *law, double V, double s) {
     double w = NAN;
     assert_int_equal(ilsa_tip_width(law, V, s, &w), ILSA_OK);
     return w;
@@ -122,10 +122,10 @@ static double width_of(const tip_law *law, double V, double s) {
 /* (3.3), and the moment ratios of its three power laws. */
 static void test_vertices(void **state) {
     (void)state;
-    const tip_law k = {3.0, 1e-20, 5.0, 1e-20}, m = {3.0, 2.0, 0.0, 0.0};
-    const tip_law mt = {3.0, 2.0, 0.0, 1e12};
+    const ilsa_material_def k = {3.0, 1e-20, 5.0, 1e-20}, m = {3.0, 2.0, 0.0, 0.0};
+    const ilsa_material_def mt = {3.0, 2.0, 0.0, 1e12};
     const double V = 0.7, s = 1.9;
-    const tip_law *law[3] = {&k, &mt, &m};
+    const ilsa_material_def *law[3] = {&k, &mt, &m};
     const double vertex[3] = {5.0 / 3.0 * sqrt(s),
                               BETA_MT * pow(4.0 * 4.0 * V * 1e24 / 9.0, 0.125) * pow(s, 0.625),
                               BETA_M * cbrt(2.0 * V / 3.0) * pow(s, 2.0 / 3.0)};
@@ -144,7 +144,7 @@ static void test_vertices(void **state) {
 static void test_width_above_vertices(void **state) {
     (void)state;
     for (int i = 0; i < 20000; i++) {
-        const tip_law law = random_law(6.0);
+        const ilsa_material_def law = random_law(6.0);
         const double V = power_of_10(-6.0, 6.0), s = power_of_10(-6.0, 6.0);
         const double w = width_of(&law, V, s);
         const double mt = 4.0 * law.mu_prime * law.mu_prime * V * law.C_prime * law.C_prime;
@@ -158,7 +158,7 @@ static void test_width_above_vertices(void **state) {
 static void test_width_grows(void **state) {
     (void)state;
     for (int i = 0; i < 20000; i++) {
-        const tip_law law = random_law(4.0);
+        const ilsa_material_def law = random_law(4.0);
         const double V = power_of_10(-6.0, 6.0), s = power_of_10(-6.0, 6.0);
         const double w = width_of(&law, V, s);
         assert_true(width_of(&law, V, 1.01 * s) > w);
@@ -173,24 +173,24 @@ static void rows_are_widths_alone(void **state) {
     static const double part[2][5] = {{1.0, 0.37, 0.045, 4e-4, 4e-5}, {1.0, 2.8, 0.0, 0.0, 0.0}};
     double near = 0.0, far = 0.0, by_V = 0.0, moment = 0.0;
     for (int n = 0; n < 4000; n++) {
-        const tip_law law = random_law(4.0);
+        const ilsa_material_def law = random_law(4.0);
         const double V = power_of_10(-6.0, 6.0), first = power_of_10(-4.0, 4.0), small = 1e-5;
         const int count = n % 2 ? 2 : 5;
         double s[5];
-        tip_point point[5];
+        asymptote_point point[5];
         for (int k = 0; k < count; k++)
             s[k] = first * part[n % 2][k];
-        ilsai_tip_row(&law, V, count, s, point);
+        ilsai_asymptote_row(&law, V, count, s, point);
         for (int k = 0; k < count; k++) {
-            const double w = ilsai_tip_width(&law, V, s[k]);
+            const double w = ilsai_asymptote_width(&law, V, s[k]);
             if (s[k] < 1e-3 * first) {
                 far = larger(far, relative(point[k].w, w));
                 continue;
             }
             double M0, M1;
-            const double faster = ilsai_tip_width(&law, V * (1.0 + small), s[k]);
-            const double slower = ilsai_tip_width(&law, V * (1.0 - small), s[k]);
-            ilsai_tip_moments(&law, V, s[k], w, &M0, &M1);
+            const double faster = ilsai_asymptote_width(&law, V * (1.0 + small), s[k]);
+            const double slower = ilsai_asymptote_width(&law, V * (1.0 - small), s[k]);
+            ilsai_asymptote_moments(&law, V, s[k], w, &M0, &M1);
             near = larger(near, relative(point[k].w, w));
             moment = larger(moment, relative(point[k].M0, M0));
             by_V = larger(by_V, fabs(point[k].by_V - log(faster / slower) / (2.0 * small)));
@@ -207,7 +207,7 @@ static void rows_are_widths_alone(void **state) {
 
 static void test_width_at_rest(void **state) {
     (void)state;
-    const tip_law law = {10.0, 1.0, 4.0, 2.0}, soft = {10.0, 1.0, 0.0, 2.0};
+    const ilsa_material_def law = {10.0, 1.0, 4.0, 2.0}, soft = {10.0, 1.0, 0.0, 2.0};
     double M0, M1;
     assert_below(fabs(width_of(&law, 0.0, 9.0) - 1.2), 1e-15);
     assert_below(relative(width_of(&law, 1e-300, 9.0), 1.2), 1e-15);
@@ -220,7 +220,8 @@ static void test_width_at_rest(void **state) {
 }
 
 /* Integrals of the closed-form width over [0, s] by Simpson's rule in ln s. */
-static void integrate_width(const tip_law *law, double V, double s, double *M0, double *M1) {
+static void integrate_width(const ilsa_material_def *law, double V, double s, double *M0,
+                            double *M1) {
     const int steps = 800;
     const double h = 40.0 / steps;
     *M0 = *M1 = 0.0;
@@ -237,7 +238,7 @@ static void test_moments_are_integrals(void **state) {
     (void)state;
     double worst0 = 0.0, worst1 = 0.0;
     for (int i = 0; i < 400; i++) {
-        const tip_law law = random_law(4.0);
+        const ilsa_material_def law = random_law(4.0);
         const double V = power_of_10(-4.0, 4.0), s = power_of_10(-4.0, 4.0);
         double M0, M1, exact0, exact1;
         assert_int_equal(ilsa_tip_moments(&law, V, s, width_of(&law, V, s), &M0, &M1), ILSA_OK);
@@ -319,7 +320,7 @@ static void test_g_delta_quadrature(void **state) {
 }
 
 /* A survey cell whose K_hat at s0 is below 1 more often than not. */
-static double random_survey_width(const tip_law *law, double s0) {
+static double random_survey_width(const ilsa_material_def *law, double s0) {
     if (law->K_prime == 0.0 || uniform() < 0.3)
         return power_of_10(-6.0, 6.0);
     return law->K_prime * sqrt(s0) / law->E_prime * (1.0 + power_of_10(-12.0, 1.0));
@@ -330,7 +331,7 @@ static void test_distance_inverts_width(void **state) {
     double worst = 0.0;
     int moved = 0;
     for (int i = 0; i < 100000; i++) {
-        const tip_law law = random_law(6.0);
+        const ilsa_material_def law = random_law(6.0);
         const double s0 = power_of_10(-6.0, 6.0), dt = power_of_10(-6.0, 6.0);
         const double w = random_survey_width(&law, s0);
         double s, V;
@@ -353,7 +354,7 @@ static void test_distance_inverts_width(void **state) {
 /* Also the other way: V from a width that was made with it. */
 static void test_distance_finds_velocity(void **state) {
     (void)state;
-    const tip_law laws[] = {
+    const ilsa_material_def laws[] = {
         {1.0, 1.0, 1.0, 1.0}, {1.0, 1.0, 0.0, 1.0}, {1.0, 1.0, 1.0, 0.0}, {1.0, 1.0, 0.0, 0.0}};
     for (size_t i = 0; i < sizeof laws / sizeof *laws; i++) {
         for (double V = 1e-3; V < 2e3; V *= 10.0) {
@@ -370,11 +371,11 @@ static void test_distance_finds_velocity(void **state) {
 
 static void test_distance_arrested(void **state) {
     (void)state;
-    const tip_law law = {10.0, 1.0, 4.0, 0.1};
+    const ilsa_material_def law = {10.0, 1.0, 4.0, 0.1};
     double s, V;
     assert_int_equal(ilsa_tip_distance(&law, 1.2 * (1.0 - 1e-12), 9.0, 2.0, &s, &V), ILSA_OK);
     assert_true(s == 9.0 && V == 0.0);
-    assert_true(ilsai_tip_distance(&law, 1.1, 9.0, 2.0).ds_dw == 0.0);
+    assert_true(ilsai_asymptote_distance(&law, 1.1, 9.0, 2.0).ds_dw == 0.0);
     /* Continuous into arrest, and the front passes the point where K_hat = 1 never. */
     assert_int_equal(ilsa_tip_distance(&law, 1.2 * (1.0 + 1e-12), 9.0, 2.0, &s, &V), ILSA_OK);
     assert_true(V > 0.0 && s >= 9.0 && s < 9.0 * (1.0 + 3e-12));
@@ -383,11 +384,11 @@ static void test_distance_arrested(void **state) {
 static void test_distance_grows_with_width(void **state) {
     (void)state;
     for (int i = 0; i < 20000; i++) {
-        const tip_law law = random_law(4.0);
+        const ilsa_material_def law = random_law(4.0);
         const double s0 = power_of_10(-3.0, 3.0), dt = power_of_10(-3.0, 3.0);
         const double w = random_survey_width(&law, s0);
-        const tip_front a = ilsai_tip_distance(&law, w, s0, dt);
-        const tip_front b = ilsai_tip_distance(&law, 1.001 * w, s0, dt);
+        const asymptote_front a = ilsai_asymptote_distance(&law, w, s0, dt);
+        const asymptote_front b = ilsai_asymptote_distance(&law, 1.001 * w, s0, dt);
         assert_true(b.V > a.V || (a.V == 0.0 && b.V == 0.0));
         assert_true(b.s >= a.s && a.ds_dw >= 0.0);
     }
@@ -396,7 +397,7 @@ static void test_distance_grows_with_width(void **state) {
 /* Without viscosity the width is that of toughness at any velocity, with or without leak-off. */
 static void test_toughness_alone(void **state) {
     (void)state;
-    const tip_law laws[] = {{10.0, 0.0, 4.0, 0.0}, {10.0, 0.0, 4.0, 0.7}};
+    const ilsa_material_def laws[] = {{10.0, 0.0, 4.0, 0.0}, {10.0, 0.0, 4.0, 0.7}};
     for (size_t i = 0; i < sizeof laws / sizeof *laws; i++) {
         for (double V = 0.0; V < 1e300; V = 1e10 * V + 1e-200) {
             double M0, M1;
@@ -414,20 +415,20 @@ static void test_toughness_alone(void **state) {
 /* (4.9) is then (E' w / K')^2, whatever the time, and not below s0. */
 static void test_distance_of_toughness(void **state) {
     (void)state;
-    const tip_law law = {10.0, 0.0, 4.0, 0.3};
+    const ilsa_material_def law = {10.0, 0.0, 4.0, 0.3};
     double s, V;
     for (double dt = 1e-6; dt < 1e7; dt *= 1e3) {
         assert_int_equal(ilsa_tip_distance(&law, 1.2, 4.0, dt, &s, &V), ILSA_OK);
         assert_below(relative(s, 9.0), 1e-15);
         assert_below(relative(V, 5.0 / dt), 1e-15);
-        assert_below(relative(ilsai_tip_distance(&law, 1.2, 4.0, dt).ds_dw, 2.0 * 9.0 / 1.2),
+        assert_below(relative(ilsai_asymptote_distance(&law, 1.2, 4.0, dt).ds_dw, 2.0 * 9.0 / 1.2),
                      1e-15);
         assert_int_equal(ilsa_tip_distance(&law, 1.2 * (1.0 - 1e-12), 9.0, dt, &s, &V), ILSA_OK);
         assert_true(s == 9.0 && V == 0.0);
-        assert_true(ilsai_tip_distance(&law, 1.1, 9.0, dt).ds_dw == 0.0);
+        assert_true(ilsai_asymptote_distance(&law, 1.1, 9.0, dt).ds_dw == 0.0);
     }
     /* Numbers whose products overflow on the way. */
-    const tip_law huge = {1e200, 0.0, 1e250, 0.0};
+    const ilsa_material_def huge = {1e200, 0.0, 1e250, 0.0};
     assert_int_equal(ilsa_tip_distance(&huge, 1e150, 1.0, 1.0, &s, &V), ILSA_OK);
     assert_below(relative(s, 1e200), 1e-12);
     assert_below(relative(width_of(&huge, 1.0, s), 1e150), 1e-12);
@@ -439,12 +440,13 @@ static void test_distance_of_toughness(void **state) {
 static void test_little_viscosity(void **state) {
     (void)state;
     for (int i = 0; i < 1000; i++) {
-        tip_law law = {power_of_10(-2.0, 2.0), 0.0, power_of_10(-2.0, 2.0), 0.0}, thin = law;
+        ilsa_material_def law = {power_of_10(-2.0, 2.0), 0.0, power_of_10(-2.0, 2.0), 0.0},
+                          thin = law;
         const double s = power_of_10(-2.0, 2.0), dt = power_of_10(-2.0, 2.0);
         const double w = width_of(&law, 1.0, s) * (1.0 + power_of_10(-3.0, 1.0));
         thin.mu_prime = 1e-25;
-        const tip_front a = ilsai_tip_distance(&law, w, s, dt);
-        const tip_front b = ilsai_tip_distance(&thin, w, s, dt);
+        const asymptote_front a = ilsai_asymptote_distance(&law, w, s, dt);
+        const asymptote_front b = ilsai_asymptote_distance(&thin, w, s, dt);
         assert_below(relative(b.s, a.s), 1e-8);
         assert_below(relative(b.ds_dw, a.ds_dw), 1e-8);
         assert_below(relative(width_of(&thin, 1.0, s), width_of(&law, 1.0, s)), 1e-12);
@@ -456,15 +458,15 @@ static void test_distance_derivative(void **state) {
     (void)state;
     double worst = 0.0;
     for (int i = 0; i < 20000; i++) {
-        const tip_law law = random_law(3.0);
+        const ilsa_material_def law = random_law(3.0);
         const double s0 = power_of_10(-2.0, 2.0), dt = power_of_10(-2.0, 2.0);
         const double w = law.K_prime > 0.0
                              ? law.K_prime * sqrt(s0) / law.E_prime * (1.0 + power_of_10(-4.0, 1.0))
                              : power_of_10(-3.0, 3.0);
         const double h = 1e-4 * (w - law.K_prime * sqrt(s0) / law.E_prime);
-        const tip_front a = ilsai_tip_distance(&law, w - h, s0, dt);
-        const tip_front b = ilsai_tip_distance(&law, w + h, s0, dt);
-        const tip_front f = ilsai_tip_distance(&law, w, s0, dt);
+        const asymptote_front a = ilsai_asymptote_distance(&law, w - h, s0, dt);
+        const asymptote_front b = ilsai_asymptote_distance(&law, w + h, s0, dt);
+        const asymptote_front f = ilsai_asymptote_distance(&law, w, s0, dt);
         worst = larger(worst, relative(f.ds_dw, (b.V - a.V) * dt / (2.0 * h)));
     }
     print_message("ds_dw against central differences: %.2g\n", worst);
@@ -476,18 +478,18 @@ static void test_units(void **state) {
     (void)state;
     double worst = 0.0;
     for (int i = 0; i < 5000; i++) {
-        const tip_law law = random_law(3.0);
+        const ilsa_material_def law = random_law(3.0);
         const double L = power_of_10(-20.0, 20.0), T = power_of_10(-20.0, 20.0);
         const double P = power_of_10(-20.0, 20.0);
-        const tip_law other = {law.E_prime * P, law.mu_prime * P * T, law.K_prime * P * sqrt(L),
-                               law.C_prime * L / sqrt(T)};
+        const ilsa_material_def other = {law.E_prime * P, law.mu_prime * P * T,
+                                         law.K_prime * P * sqrt(L), law.C_prime * L / sqrt(T)};
         const double V = power_of_10(-3.0, 3.0), s = power_of_10(-3.0, 3.0);
         const double w = width_of(&law, V, s), dt = 0.1 * s / V;
-        const tip_front a = ilsai_tip_distance(&law, 1.3 * w, s, dt);
-        const tip_front b = ilsai_tip_distance(&other, 1.3 * w * L, s * L, dt * T);
+        const asymptote_front a = ilsai_asymptote_distance(&law, 1.3 * w, s, dt);
+        const asymptote_front b = ilsai_asymptote_distance(&other, 1.3 * w * L, s * L, dt * T);
         double M[4];
-        ilsai_tip_moments(&law, V, s, w, &M[0], &M[1]);
-        ilsai_tip_moments(&other, V * L / T, s * L, w * L, &M[2], &M[3]);
+        ilsai_asymptote_moments(&law, V, s, w, &M[0], &M[1]);
+        ilsai_asymptote_moments(&other, V * L / T, s * L, w * L, &M[2], &M[3]);
         worst = larger(worst, relative(width_of(&other, V * L / T, s * L), w * L));
         worst = larger(worst, relative(b.s, a.s * L));
         worst = larger(worst, relative(b.V, a.V * L / T));
@@ -503,7 +505,7 @@ static void test_units(void **state) {
 static void test_double_range(void **state) {
     (void)state;
     for (int i = 0; i < 100000; i++) {
-        tip_law law = random_law(308.0);
+        ilsa_material_def law = random_law(308.0);
         if (i % 16 == 0)
             law.mu_prime = 0.0;
         const double a = power_of_10(-320.0, 308.0), s = power_of_10(-320.0, 308.0);
@@ -520,14 +522,14 @@ static void test_double_range(void **state) {
         }
         if (ilsa_tip_distance(&law, w, s, a, &out, &V) == ILSA_OK) {
             assert_true(out >= s && out <= DBL_MAX && V >= 0.0 && V <= DBL_MAX);
-            assert_true(ilsai_tip_distance(&law, w, s, a).ds_dw >= 0.0);
+            assert_true(ilsai_asymptote_distance(&law, w, s, a).ds_dw >= 0.0);
         }
         assert_int_equal(ilsa_tip_triangle(&law, a, s, w, &regime), ILSA_OK);
         assert_below(fabs(regime.N_k + regime.N_mt + regime.N_m - 1.0), 1e-14);
     }
 }
 
-static ilsa_tip_regime regime_of(const tip_law *law, double V, double s, double w) {
+static ilsa_tip_regime regime_of(const ilsa_material_def *law, double V, double s, double w) {
     ilsa_tip_regime regime;
     assert_int_equal(ilsa_tip_triangle(law, V, s, w, &regime), ILSA_OK);
     return regime;
@@ -537,7 +539,7 @@ static void test_triangle_partition(void **state) {
     (void)state;
     const double root3 = sqrt(3.0);
     for (int i = 0; i < 20000; i++) {
-        const tip_law law = random_law(6.0);
+        const ilsa_material_def law = random_law(6.0);
         const double V = power_of_10(-6.0, 6.0), s = power_of_10(-6.0, 6.0);
         const ilsa_tip_regime r = regime_of(&law, V, s, width_of(&law, V, s));
         assert_true(r.N_k >= 0.0 && r.N_mt >= 0.0 && r.N_m >= 0.0);
@@ -553,7 +555,7 @@ static void test_triangle_partition(void **state) {
 /* (3.19) as printed, at a point where it is not singular. */
 static void test_triangle_formula(void **state) {
     (void)state;
-    const tip_law law = {2.0, 3.0, 1.5, 0.4};
+    const ilsa_material_def law = {2.0, 3.0, 1.5, 0.4};
     const double V = 0.3, s = 0.8, w = width_of(&law, V, s);
     const double w_k = 1.5 / 2.0 * sqrt(s), w_m = BETA_M * cbrt(3.0 * V / 2.0 * s * s);
     const double w_mt = BETA_MT * pow(4.0 * 9.0 * V * 0.16 / 4.0, 0.125) * pow(s, 0.625);
@@ -566,8 +568,8 @@ static void test_triangle_formula(void **state) {
 
 static void test_triangle_vertices(void **state) {
     (void)state;
-    const tip_law law = {2.0, 3.0, 1.5, 0.4}, viscous = {2.0, 3.0, 0.0, 0.0};
-    const tip_law leaky = {1.0, 1.0, 0.0, 1e9}, tough = {1.0, 1e-30, 1.0, 0.0};
+    const ilsa_material_def law = {2.0, 3.0, 1.5, 0.4}, viscous = {2.0, 3.0, 0.0, 0.0};
+    const ilsa_material_def leaky = {1.0, 1.0, 0.0, 1e9}, tough = {1.0, 1e-30, 1.0, 0.0};
     assert_below(fabs(regime_of(&law, 0.0, 0.8, 0.1).N_k - 1.0), 0.0);
     assert_below(fabs(regime_of(&law, 0.0, 0.8, 0.1).x - 1.0), 0.0);
     assert_below(fabs(regime_of(&viscous, 0.0, 0.8, 0.0).N_k - 1.0), 0.0);
@@ -591,7 +593,7 @@ static const double bad_positive[] = {0.0, -1.0, INFINITY, -INFINITY, NAN};
 static void test_bad_laws(void **state) {
     (void)state;
     for (int i = 0; i < 20; i++) {
-        tip_law law = {1.0, 1.0, 1.0, 1.0};
+        ilsa_material_def law = {1.0, 1.0, 1.0, 1.0};
         const double bad = bad_positive[i / 4];
         double *member[4] = {&law.E_prime, &law.mu_prime, &law.K_prime, &law.C_prime};
         *member[i % 4] = bad;
@@ -614,7 +616,8 @@ static void test_bad_laws(void **state) {
 /* Neither viscosity nor toughness: there is no width. */
 static void test_law_of_nothing(void **state) {
     (void)state;
-    const tip_law laws[] = {{1.0, 0.0, 0.0, 0.0}, {1.0, 0.0, 0.0, 1.0}, {1.0, -0.0, -0.0, 1.0}};
+    const ilsa_material_def laws[] = {
+        {1.0, 0.0, 0.0, 0.0}, {1.0, 0.0, 0.0, 1.0}, {1.0, -0.0, -0.0, 1.0}};
     for (size_t i = 0; i < sizeof laws / sizeof *laws; i++) {
         double a = UNTOUCHED, b = UNTOUCHED;
         ilsa_tip_regime r = {.N_k = UNTOUCHED, .x = UNTOUCHED};
@@ -628,7 +631,7 @@ static void test_law_of_nothing(void **state) {
 
 static void test_bad_numbers(void **state) {
     (void)state;
-    const tip_law law = {1.0, 1.0, 1.0, 1.0};
+    const ilsa_material_def law = {1.0, 1.0, 1.0, 1.0};
     double a = UNTOUCHED, b = UNTOUCHED;
     ilsa_tip_regime r = {.N_k = UNTOUCHED, .x = UNTOUCHED};
     for (size_t i = 0; i < sizeof bad_positive / sizeof *bad_positive; i++) {
@@ -659,7 +662,7 @@ static void test_bad_numbers(void **state) {
 
 static void test_results_out_of_range(void **state) {
     (void)state;
-    const tip_law law = {1e-300, 1.0, 1e300, 0.0}, soft = {1.0, 1e-300, 0.0, 0.0};
+    const ilsa_material_def law = {1e-300, 1.0, 1e300, 0.0}, soft = {1.0, 1e-300, 0.0, 0.0};
     double a = UNTOUCHED, b = UNTOUCHED;
     assert_int_equal(ilsa_tip_width(&law, 1.0, 1.0, &a), ILSA_ERR_VALUE);
     assert_int_equal(ilsa_tip_moments(&soft, 1.0, 1e200, 1.0, &a, &b), ILSA_ERR_VALUE);
@@ -670,7 +673,7 @@ static void test_results_out_of_range(void **state) {
 
 static void test_null(void **state) {
     (void)state;
-    const tip_law law = {1.0, 1.0, 1.0, 1.0};
+    const ilsa_material_def law = {1.0, 1.0, 1.0, 1.0};
     double a = UNTOUCHED;
     ilsa_tip_regime r;
     assert_int_equal(ilsa_tip_width(NULL, 1.0, 1.0, &a), ILSA_ERR_NULL);

@@ -15,19 +15,20 @@
 #include "tip/tip_cell.h"
 
 /* cos and sin exact at the ends, as the solver has them. */
-static tipcell_front make_front(double ell, double alpha, double dx, double dy) {
+static tip_cell_front make_front(double ell, double alpha, double dx, double dy) {
     const double right = 1.5707963267948966;
-    return (tipcell_front){ell, alpha == right ? 0.0 : cos(alpha),
-                           alpha == right ? 1.0 : sin(alpha), dx, dy};
+    return (tip_cell_front){ell, alpha == right ? 0.0 : cos(alpha),
+                            alpha == right ? 1.0 : sin(alpha), dx, dy};
 }
 
-static tipcell_front read_front(const csv_table *table, size_t i) {
+static tip_cell_front read_front(const csv_table *table, size_t i) {
     return make_front(csv_get(table, i, "ell"), csv_get(table, i, "alpha"), csv_get(table, i, "dx"),
                       csv_get(table, i, "dy"));
 }
 
 /* Mean of M0 over [far - h, far], M0(xi < 0) = 0, by the double exponential rule. */
-static double quadrature_strip(const tip_law *law, double V, double K_I, double h, double far) {
+static double quadrature_strip(const ilsa_material_def *law, double V, double K_I, double h,
+                               double far) {
     const double step = 1.0 / 32.0, pi = 3.141592653589793;
     const double width = fmin(h, far);
     double sum = 0.0;
@@ -37,18 +38,20 @@ static double quadrature_strip(const tip_law *law, double V, double K_I, double 
         const double q = exp(-pi * sinh(k * step));
         const double xi = (far - width) + width / (1.0 + q);
         const double weight = step * pi * cosh(k * step) * q / ((1.0 + q) * (1.0 + q));
-        const double w = V > 0.0 ? ilsai_tip_width(law, V, xi) : K_I / law->E_prime * sqrt(xi);
+        const double w =
+            V > 0.0 ? ilsai_asymptote_width(law, V, xi) : K_I / law->E_prime * sqrt(xi);
         double M0, M1;
         if (!(weight > 0.0 && xi > 0.0))
             continue;
-        ilsai_tip_moments(law, V, xi, w, &M0, &M1);
+        ilsai_asymptote_moments(law, V, xi, w, &M0, &M1);
         sum += weight * M0;
     }
     return width < h ? sum * (width / h) : sum;
 }
 
 /* The volume as M0 integrated over the strips, independently of the library's rule. */
-static double quadrature_volume(const tip_law *law, double V, double K_I, const tipcell_front *f) {
+static double quadrature_volume(const ilsa_material_def *law, double V, double K_I,
+                                const tip_cell_front *f) {
     const double a = f->dy * f->sin_a, b = f->dx * f->cos_a, h = fmin(a, b), H = fmax(a, b);
     return f->dx * f->dy / H *
            (quadrature_strip(law, V, K_I, h, f->ell) -
@@ -60,11 +63,11 @@ static void test_volume_table(void **state) {
     csv_table *table = csv_read("tests/data/tip_cell_volume.csv");
     double exact = 0.0, closed = 0.0, moments = 0.0, formula = 0.0;
     for (size_t i = 0; i < csv_rows(table); i++) {
-        const tip_law law = {csv_get(table, i, "E_p"), csv_get(table, i, "mu_p"),
-                             csv_get(table, i, "K_p"), csv_get(table, i, "C_p")};
-        const tipcell_front front = read_front(table, i);
+        const ilsa_material_def law = {csv_get(table, i, "E_p"), csv_get(table, i, "mu_p"),
+                                       csv_get(table, i, "K_p"), csv_get(table, i, "C_p")};
+        const tip_cell_front front = read_front(table, i);
         const double V = csv_get(table, i, "V"), K_I = csv_get(table, i, "KI_p_if_V0");
-        const double volume = ilsai_tipcell_volume(&law, V, K_I, &front);
+        const double volume = ilsai_tip_cell_volume(&law, V, K_I, &front);
         exact = larger(exact, relative(volume, csv_get(table, i, "Vol_quad_exact_tip")));
         closed = larger(closed, relative(volume, csv_get(table, i, "Vol_quad")));
         moments = larger(moments, relative(volume, csv_get(table, i, "Vol_eq418_with_far_corner")));
@@ -87,20 +90,21 @@ static void test_volume_table(void **state) {
  */
 static void volumes_grow_as_their_derivatives_say(void **state) {
     (void)state;
-    static const tip_law laws[] = {{2, 1, 0, 0}, {2, 1, 3, 0}, {2, 1e-3, 3, 0}, {2, 1, 1, 5}};
+    static const ilsa_material_def laws[] = {
+        {2, 1, 0, 0}, {2, 1, 3, 0}, {2, 1e-3, 3, 0}, {2, 1, 1, 5}};
     const double V = 0.7, step = 0.01;
     double by_ell = 0.0, by_V = 0.0;
     for (int n = 0; n < 4; n++)
         for (double alpha = 0.0; alpha < 1.6; alpha += 0.2)
             for (double ell = 0.05; ell < 2.5; ell += 0.15) {
-                tipcell_front at = make_front(ell, alpha, 1.5, 0.8);
-                const tipcell_growth now = ilsai_tipcell_growth(&laws[n], V, 0, &at);
-                const double faster = ilsai_tipcell_volume(&laws[n], V * (1 + step), 0, &at);
-                const double slower = ilsai_tipcell_volume(&laws[n], V * (1 - step), 0, &at);
+                tip_cell_front at = make_front(ell, alpha, 1.5, 0.8);
+                const tip_cell_growth now = ilsai_tip_cell_growth(&laws[n], V, 0, &at);
+                const double faster = ilsai_tip_cell_volume(&laws[n], V * (1 + step), 0, &at);
+                const double slower = ilsai_tip_cell_volume(&laws[n], V * (1 - step), 0, &at);
                 at.ell = ell * (1 + step);
-                const double more = ilsai_tipcell_volume(&laws[n], V, 0, &at);
+                const double more = ilsai_tip_cell_volume(&laws[n], V, 0, &at);
                 at.ell = ell * (1 - step);
-                const double less = ilsai_tipcell_volume(&laws[n], V, 0, &at);
+                const double less = ilsai_tip_cell_volume(&laws[n], V, 0, &at);
                 const double unit = 2 * step * now.volume;
                 by_V = larger(by_V, fabs((faster - slower) / unit - now.by_log_V / now.volume));
                 if (fabs(ell - fmax(1.5 * at.cos_a, 0.8 * at.sin_a)) > 2 * step * ell)
@@ -119,24 +123,24 @@ static double triangle(double ell) {
 
 static void test_volume_at_rest(void **state) {
     (void)state;
-    const tip_law law = {2.0, 1.0, 3.0, 1.0};
+    const ilsa_material_def law = {2.0, 1.0, 3.0, 1.0};
     const double K_I = 1.2, dx = 1.5, dy = 0.8;
     for (double alpha = 0.2; alpha < 1.5; alpha += 0.1) {
         const double c = cos(alpha), s = sin(alpha);
         for (double ell = 0.1; ell < 2.5; ell += 0.1) {
-            const tipcell_front front = {ell, c, s, dx, dy};
+            const tip_cell_front front = {ell, c, s, dx, dy};
             const double sum = triangle(ell) - triangle(ell - dy * s) - triangle(ell - dx * c) +
                                triangle(ell - dx * c - dy * s);
             assert_below(
-                relative(ilsai_tipcell_volume(&law, 0.0, K_I, &front), K_I / 2.0 * sum / (s * c)),
+                relative(ilsai_tip_cell_volume(&law, 0.0, K_I, &front), K_I / 2.0 * sum / (s * c)),
                 5e-5);
         }
     }
-    const tipcell_front flat = {1.1, 1.0, 0.0, dx, dy}, upright = {0.7, 0.0, 1.0, dx, dy};
-    assert_below(relative(ilsai_tipcell_volume(&law, 0.0, K_I, &flat),
+    const tip_cell_front flat = {1.1, 1.0, 0.0, dx, dy}, upright = {0.7, 0.0, 1.0, dx, dy};
+    assert_below(relative(ilsai_tip_cell_volume(&law, 0.0, K_I, &flat),
                           dy * K_I / 2.0 * 2.0 / 3.0 * pow(1.1, 1.5)),
                  1e-14);
-    assert_below(relative(ilsai_tipcell_volume(&law, 0.0, K_I, &upright),
+    assert_below(relative(ilsai_tip_cell_volume(&law, 0.0, K_I, &upright),
                           dx * K_I / 2.0 * 2.0 / 3.0 * pow(0.7, 1.5)),
                  1e-14);
 }
@@ -147,11 +151,11 @@ typedef struct cell_values {
 } cell_values;
 
 static cell_values values_of(double ell, double cos_a, double sin_a, double dx, double dy) {
-    const tip_law law = {1.0, 1.0, 1.0, 0.7};
-    const tipcell_front front = {ell, cos_a, sin_a, dx, dy};
+    const ilsa_material_def law = {1.0, 1.0, 1.0, 0.7};
+    const tip_cell_front front = {ell, cos_a, sin_a, dx, dy};
     const double t[2] = {0.0, fmax(ell, 0.0)}, path[2] = {0.0, fmax(ell, 0.0)};
-    return (cell_values){ilsai_tipcell_volume(&law, 1.0, 0.0, &front), ilsai_tipcell_area(&front),
-                         ilsai_tipcell_leakoff_path(1.0, &front, 2, t, path)};
+    return (cell_values){ilsai_tip_cell_volume(&law, 1.0, 0.0, &front), ilsai_tip_cell_area(&front),
+                         ilsai_tip_cell_leakoff_path(1.0, &front, 2, t, path)};
 }
 
 static double difference(cell_values a, cell_values b) {
@@ -224,14 +228,14 @@ static void test_area(void **state) {
     for (int i = 0; i < 2000; i++) {
         const double alpha = 1.57 * uniform(), c = cos(alpha), s = sin(alpha);
         const double dx = 0.2 + uniform(), dy = 0.2 + uniform(), ell = 2.0 * uniform() + 0.01;
-        const tipcell_front front = {ell, c, s, dx, dy};
+        const tip_cell_front front = {ell, c, s, dx, dy};
         const double a = fmax(ell - dy * s, 0.0), b = fmax(ell - dx * c, 0.0);
         const double far = fmax(ell - dx * c - dy * s, 0.0);
         const double area = 0.5 * (ell * ell - a * a - b * b + far * far) / (s * c);
-        assert_below(fabs(ilsai_tipcell_area(&front) - area), 1e-13 * (1.0 + ell * ell / (s * c)));
+        assert_below(fabs(ilsai_tip_cell_area(&front) - area), 1e-13 * (1.0 + ell * ell / (s * c)));
     }
-    const tipcell_front flat = {0.3, 1.0, 0.0, 1.5, 0.8};
-    assert_below(relative(ilsai_tipcell_area(&flat), 0.24), 1e-15);
+    const tip_cell_front flat = {0.3, 1.0, 0.0, 1.5, 0.8};
+    assert_below(relative(ilsai_tip_cell_area(&flat), 0.24), 1e-15);
 }
 
 /* The front's distance since t_A in the table's three histories. */
@@ -253,7 +257,7 @@ static double history_ell(const csv_table *table, size_t i, double t) {
  * velocity of history 2 to the present, graded towards both.
  */
 static double leakoff_knots(const csv_table *table, size_t i, double now, int count) {
-    const tipcell_front front = read_front(table, i);
+    const tip_cell_front front = read_front(table, i);
     const double start = fmin(csv_get(table, i, "h3"), now);
     double *t = malloc(2 * (size_t)count * sizeof *t), *ell = t + count;
     assert_non_null(t);
@@ -265,7 +269,7 @@ static double leakoff_knots(const csv_table *table, size_t i, double now, int co
         ell[k] = history_ell(table, i, t[k]);
     }
     const double leakoff =
-        now > 0.0 ? ilsai_tipcell_leakoff_path(csv_get(table, i, "C_p"), &front, count, t, ell)
+        now > 0.0 ? ilsai_tip_cell_leakoff_path(csv_get(table, i, "C_p"), &front, count, t, ell)
                   : 0.0;
     free(t);
     return leakoff;
@@ -273,12 +277,12 @@ static double leakoff_knots(const csv_table *table, size_t i, double now, int co
 
 /* Leak-off along a recorded history of equal time steps. */
 static double leakoff_recorded(const csv_table *table, size_t i, double now, int steps) {
-    const tipcell_front front = read_front(table, i);
-    tipcell_history history;
-    ilsai_tipcell_enter(&history, 0.0);
+    const tip_cell_front front = read_front(table, i);
+    tip_cell_history history;
+    ilsai_tip_cell_enter(&history, 0.0);
     for (int k = 1; k <= steps; k++)
-        ilsai_tipcell_record(&history, now * k / steps, history_ell(table, i, now * k / steps));
-    return ilsai_tipcell_leakoff(csv_get(table, i, "C_p"), &front, &history);
+        ilsai_tip_cell_record(&history, now * k / steps, history_ell(table, i, now * k / steps));
+    return ilsai_tip_cell_leakoff(csv_get(table, i, "C_p"), &front, &history);
 }
 
 static void test_leakoff_constant_velocity(void **state) {
@@ -342,7 +346,7 @@ static double worst_recorded(const csv_table *table, int steps) {
 static void test_leakoff_recorded_history(void **state) {
     (void)state;
     csv_table *table = csv_read("tests/data/tip_cell_leakoff.csv");
-    const int steps[4] = {1, 3, TIPCELL_KNOTS - 1, 200};
+    const int steps[4] = {1, 3, TIP_CELL_KNOTS - 1, 200};
     const double bound[4] = {0.4, 0.1, 0.02, 0.02};
     for (int k = 0; k < 4; k++) {
         const double worst = worst_recorded(table, steps[k]);
@@ -356,50 +360,50 @@ static void test_leakoff_recorded_history(void **state) {
 
 static void test_leakoff_vanishes(void **state) {
     (void)state;
-    const tipcell_front front = {0.5, 0.8, 0.6, 1.0, 1.0};
-    tipcell_history history;
-    ilsai_tipcell_enter(&history, 3.0);
-    assert_true(ilsai_tipcell_leakoff(1.0, &front, &history) == 0.0);
-    ilsai_tipcell_record(&history, 4.0, 0.0);
-    assert_true(ilsai_tipcell_leakoff(1.0, &front, &history) == 0.0);
-    ilsai_tipcell_record(&history, 5.0, 0.5);
-    assert_true(ilsai_tipcell_leakoff(0.0, &front, &history) == 0.0);
-    assert_true(ilsai_tipcell_leakoff(1.0, &front, &history) > 0.0);
+    const tip_cell_front front = {0.5, 0.8, 0.6, 1.0, 1.0};
+    tip_cell_history history;
+    ilsai_tip_cell_enter(&history, 3.0);
+    assert_true(ilsai_tip_cell_leakoff(1.0, &front, &history) == 0.0);
+    ilsai_tip_cell_record(&history, 4.0, 0.0);
+    assert_true(ilsai_tip_cell_leakoff(1.0, &front, &history) == 0.0);
+    ilsai_tip_cell_record(&history, 5.0, 0.5);
+    assert_true(ilsai_tip_cell_leakoff(0.0, &front, &history) == 0.0);
+    assert_true(ilsai_tip_cell_leakoff(1.0, &front, &history) > 0.0);
 }
 
 /* A cell that filled long ago leaks as Carter's law of its whole area. */
 static void test_leakoff_of_full_cell(void **state) {
     (void)state;
-    const tipcell_front front = {3.0, 0.8, 0.6, 1.5, 0.8};
+    const tip_cell_front front = {3.0, 0.8, 0.6, 1.5, 0.8};
     const double t[3] = {0.0, 1e-6, 100.0}, ell[3] = {0.0, 3.0, 3.0};
     assert_below(
-        relative(ilsai_tipcell_leakoff_path(0.7, &front, 3, t, ell), 2.0 * 0.7 * 1.5 * 0.8 * 10.0),
+        relative(ilsai_tip_cell_leakoff_path(0.7, &front, 3, t, ell), 2.0 * 0.7 * 1.5 * 0.8 * 10.0),
         1e-8);
 }
 
 /* A knot on the path changes nothing; a front that waits leaks on. */
 static void test_leakoff_path(void **state) {
     (void)state;
-    const tipcell_front front = {0.9, 0.8, 0.6, 1.0, 1.0};
+    const tip_cell_front front = {0.9, 0.8, 0.6, 1.0, 1.0};
     const double t[4] = {0.0, 1.0, 1.7, 3.0}, ell[4] = {0.0, 0.3, 0.51, 0.9};
     const double two_t[2] = {0.0, 3.0}, two_ell[2] = {0.0, 0.9};
     const double wait_t[4] = {0.0, 3.0, 4.0, 5.0}, wait_ell[4] = {0.0, 0.9, 0.9, 0.9};
-    const double two = ilsai_tipcell_leakoff_path(1.0, &front, 2, two_t, two_ell);
-    assert_below(relative(ilsai_tipcell_leakoff_path(1.0, &front, 4, t, ell), two), 1e-14);
-    const double less = ilsai_tipcell_leakoff_path(1.0, &front, 3, wait_t, wait_ell);
-    const double more = ilsai_tipcell_leakoff_path(1.0, &front, 4, wait_t, wait_ell);
+    const double two = ilsai_tip_cell_leakoff_path(1.0, &front, 2, two_t, two_ell);
+    assert_below(relative(ilsai_tip_cell_leakoff_path(1.0, &front, 4, t, ell), two), 1e-14);
+    const double less = ilsai_tip_cell_leakoff_path(1.0, &front, 3, wait_t, wait_ell);
+    const double more = ilsai_tip_cell_leakoff_path(1.0, &front, 4, wait_t, wait_ell);
     assert_true(more > less && less > two);
-    assert_true(more < 2.0 * sqrt(5.0) * ilsai_tipcell_area(&front));
+    assert_true(more < 2.0 * sqrt(5.0) * ilsai_tip_cell_area(&front));
 }
 
 static void test_history_entry(void **state) {
     (void)state;
-    tipcell_history history;
-    ilsai_tipcell_enter(&history, 2.5);
+    tip_cell_history history;
+    ilsai_tip_cell_enter(&history, 2.5);
     assert_int_equal(history.count, 1);
     assert_true(history.t[0] == 2.5 && history.ell[0] == 0.0);
-    ilsai_tipcell_record(&history, 3.0, 0.4);
-    ilsai_tipcell_record(&history, 4.0, 0.3); /* the front does not go back */
+    ilsai_tip_cell_record(&history, 3.0, 0.4);
+    ilsai_tip_cell_record(&history, 4.0, 0.3); /* the front does not go back */
     assert_int_equal(history.count, 3);
     assert_true(history.t[2] == 4.0 && history.ell[2] == 0.4);
 }
@@ -407,16 +411,16 @@ static void test_history_entry(void **state) {
 /* A full history keeps its ends and the corner of a path that turns sharply. */
 static void test_history_thinning(void **state) {
     (void)state;
-    tipcell_history history;
-    ilsai_tipcell_enter(&history, 0.0);
+    tip_cell_history history;
+    ilsai_tip_cell_enter(&history, 0.0);
     for (int k = 1; k <= 500; k++)
-        ilsai_tipcell_record(&history, k, k <= 100 ? 0.01 * k : 1.0 + 0.001 * (k - 100));
-    assert_int_equal(history.count, TIPCELL_KNOTS);
+        ilsai_tip_cell_record(&history, k, k <= 100 ? 0.01 * k : 1.0 + 0.001 * (k - 100));
+    assert_int_equal(history.count, TIP_CELL_KNOTS);
     assert_true(history.t[0] == 0.0 && history.ell[0] == 0.0);
-    assert_true(history.t[TIPCELL_KNOTS - 1] == 500.0);
-    assert_below(fabs(history.ell[TIPCELL_KNOTS - 1] - 1.4), 1e-14);
+    assert_true(history.t[TIP_CELL_KNOTS - 1] == 500.0);
+    assert_below(fabs(history.ell[TIP_CELL_KNOTS - 1] - 1.4), 1e-14);
     int corner = 0;
-    for (int k = 1; k < TIPCELL_KNOTS; k++) {
+    for (int k = 1; k < TIP_CELL_KNOTS; k++) {
         assert_true(history.t[k] > history.t[k - 1] && history.ell[k] >= history.ell[k - 1]);
         corner += history.t[k] == 100.0;
     }
@@ -429,15 +433,15 @@ static double slowed(double t) {
 }
 
 /* What leaks until t = 2 in so many steps, each its share by the path as it is then. */
-static double leaked_in_steps(tipcell_velocity velocity, int steps) {
-    tipcell_front front = {0, 0.8, 0.6, 1, 1};
-    tipcell_history history;
+static double leaked_in_steps(tip_cell_velocity velocity, int steps) {
+    tip_cell_front front = {0, 0.8, 0.6, 1, 1};
+    tip_cell_history history;
     double sum = 0;
-    ilsai_tipcell_enter(&history, 0);
+    ilsai_tip_cell_enter(&history, 0);
     for (int k = 1; k <= steps; k++) {
         front.ell = slowed(2.0 * k / steps);
-        ilsai_tipcell_record(&history, 2.0 * k / steps, front.ell);
-        sum += ilsai_tipcell_leakoff_last(1, velocity, &front, &history);
+        ilsai_tip_cell_record(&history, 2.0 * k / steps, front.ell);
+        sum += ilsai_tip_cell_leakoff_last(1, velocity, &front, &history);
     }
     return sum;
 }
@@ -448,9 +452,9 @@ static double leaked_in_steps(tipcell_velocity velocity, int steps) {
  */
 static void test_steps_of_a_front_that_slows(void **state) {
     (void)state;
-    const double fine = leaked_in_steps(TIPCELL_HISTORY, 64);
-    const double history = leaked_in_steps(TIPCELL_HISTORY, 8) / fine - 1;
-    const double constant = leaked_in_steps(TIPCELL_CONSTANT, 8) / fine - 1;
+    const double fine = leaked_in_steps(TIP_CELL_HISTORY, 64);
+    const double history = leaked_in_steps(TIP_CELL_HISTORY, 8) / fine - 1;
+    const double constant = leaked_in_steps(TIP_CELL_CONSTANT, 8) / fine - 1;
     print_message("slowed to 1/4: history %+.1e, constant velocity %+.1e\n", history, constant);
     assert_below(fabs(history), 0.006);
     assert_true(fabs(constant) > 0.05);
@@ -464,14 +468,14 @@ static void full_cells_leak_their_mean(void **unused) {
     (void)unused;
     double worst = 0, jump = 0, centre = 0;
     for (double alpha = 0; alpha < 1.6; alpha += 0.19634954084936207) {
-        const tipcell_front f = {0, cos(alpha), fabs(sin(alpha)), 1, 0.6};
+        const tip_cell_front f = {0, cos(alpha), fabs(sin(alpha)), 1, 0.6};
         const double full = f.dx * f.cos_a + f.dy * f.sin_a, V = 2;
-        const double spread = ilsai_tipcell_spread(&f, full / V);
+        const double spread = ilsai_tip_cell_spread(&f, full / V);
         for (double since = 0; since < 30; since = 2 * since + 0.01) {
             const double t[2] = {0, full / V + since}, ell[2] = {0, V * t[1]};
-            const double exact = ilsai_tipcell_leakoff_path(1, &f, 2, t, ell) / (f.dx * f.dy);
+            const double exact = ilsai_tip_cell_leakoff_path(1, &f, 2, t, ell) / (f.dx * f.dy);
             const double age = since + 0.5 * full / V;
-            const double mean = ilsai_tipcell_full_leakoff(1, age, spread);
+            const double mean = ilsai_tip_cell_full_leakoff(1, age, spread);
             worst = fmax(worst, fabs(mean / exact - 1));
             jump = since == 0 ? fmax(jump, fabs(mean / exact - 1)) : jump;
             centre = fmax(centre, fabs(2 * sqrt(age) / exact - 1));
@@ -486,20 +490,21 @@ static void full_cells_leak_their_mean(void **unused) {
 static void full_cells_without_spread(void **unused) {
     (void)unused;
     for (double age = 1e-9; age < 1e9; age *= 7) {
-        assert_true(fabs(ilsai_tipcell_full_leakoff(3, age, 0) / (6 * sqrt(age)) - 1) < 1e-15);
-        assert_true(fabs(ilsai_tipcell_full_leakoff(3, age, 1e-9 * age) / (6 * sqrt(age)) - 1) <
+        assert_true(fabs(ilsai_tip_cell_full_leakoff(3, age, 0) / (6 * sqrt(age)) - 1) < 1e-15);
+        assert_true(fabs(ilsai_tip_cell_full_leakoff(3, age, 1e-9 * age) / (6 * sqrt(age)) - 1) <
                     1e-15);
     }
-    assert_true(ilsai_tipcell_full_leakoff(3, 0, 0) == 0);
+    assert_true(ilsai_tip_cell_full_leakoff(3, 0, 0) == 0);
     for (double age = 0; age < 20; age += 0.3)
         for (double dt = 1e-3; dt < 100; dt *= 10) {
-            double by_ends =
-                ilsai_tipcell_full_leakoff(3, age + dt, 2) - ilsai_tipcell_full_leakoff(3, age, 2);
-            assert_true(fabs(ilsai_tipcell_full_leakoff_step(3, age, dt, 2) / by_ends - 1) < 1e-10);
+            double by_ends = ilsai_tip_cell_full_leakoff(3, age + dt, 2) -
+                             ilsai_tip_cell_full_leakoff(3, age, 2);
+            assert_true(fabs(ilsai_tip_cell_full_leakoff_step(3, age, dt, 2) / by_ends - 1) <
+                        1e-10);
         }
     /* a front still within the cell leaves a part of it dry */
-    assert_true(fabs(ilsai_tipcell_full_leakoff(3, 0, 2) - 6 * sqrt(2.0) / 3) < 1e-14);
-    assert_true(ilsai_tipcell_full_leakoff(3, -2, 2) == 0);
+    assert_true(fabs(ilsai_tip_cell_full_leakoff(3, 0, 2) - 6 * sqrt(2.0) / 3) < 1e-14);
+    assert_true(ilsai_tip_cell_full_leakoff(3, -2, 2) == 0);
 }
 
 int main(void) {

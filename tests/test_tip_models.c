@@ -144,7 +144,7 @@ static void regimes_are_of_all_processes(void **state) {
     const ilsa_front_point *front;
     size_t count;
     assert_int_equal(ilsa_advance(solver, 0.7, NULL), ILSA_OK);
-    assert_int_equal(ilsa_get_regime(solver, &survey, &count), ILSA_OK);
+    assert_int_equal(ilsa_get_survey(solver, &survey, &count), ILSA_OK);
     assert_true(count > 20);
     for (size_t i = 0; i < count; i++) {
         const ilsa_survey_point *p = &survey[i];

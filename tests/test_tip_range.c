@@ -26,7 +26,7 @@ static double any(void) {
 
 /* A law, a front and a survey cell, from the whole range or, every third, from a part of it. */
 typedef struct point {
-    tip_law law;
+    ilsa_material_def law;
     double V, s, dt;
 } point;
 
@@ -121,15 +121,15 @@ static void inner_functions_raise_nothing(void **state) {
     (void)state;
     for (long n = 0; n < points() / 4; n++) {
         const point p = nth_point(n);
-        const double w = ilsai_tip_width(&p.law, p.V, p.s), s[2] = {p.s, 0.5 * p.s};
+        const double w = ilsai_asymptote_width(&p.law, p.V, p.s), s[2] = {p.s, 0.5 * p.s};
         if (!(w <= DBL_MAX && w > 0.0 && s[1] > 0.0))
             continue;
-        tip_point row[2];
+        asymptote_point row[2];
         begin();
-        ilsai_tip_row(&p.law, p.V, 2, s, row);
+        ilsai_asymptote_row(&p.law, p.V, 2, s, row);
         check("row", &p, row[0].M0 <= DBL_MAX, row[1].w, row[1].M0);
         begin();
-        const double exponent = ilsai_tip_exponent(&p.law, p.V, p.s, w);
+        const double exponent = ilsai_asymptote_exponent(&p.law, p.V, p.s, w);
         const double by_V = row[0].by_V;
         check("exponents", &p, 1, exponent, by_V);
         assert_true(exponent >= 0.5 && exponent <= 2.0 / 3.0 + 1e-14 && by_V <= 1.0 / 3.0 + 1e-14);
@@ -201,17 +201,18 @@ static void powers_of_two_are_units_to_the_last_bit(void **state) {
     for (int n = 0; n < 20000; n++) {
         const int L = 2 * (n % 97 - 48), T = 2 * (n % 89 - 44), P = n % 101 - 50;
         const point p = nth_point(6L * n + 3); /* 1e-6 .. 1e6 */
-        const tip_law law = {ldexp(p.law.E_prime, P), ldexp(p.law.mu_prime, P + T),
-                             ldexp(p.law.K_prime, P + L / 2), ldexp(p.law.C_prime, L - T / 2)};
+        const ilsa_material_def law = {ldexp(p.law.E_prime, P), ldexp(p.law.mu_prime, P + T),
+                                       ldexp(p.law.K_prime, P + L / 2),
+                                       ldexp(p.law.C_prime, L - T / 2)};
         const double V = ldexp(p.V, L - T), s = ldexp(p.s, L), dt = ldexp(p.dt, T);
-        const double w = ilsai_tip_width(&p.law, p.V, p.s), wide = ldexp(w, L);
-        const tip_front here = ilsai_tip_distance(&p.law, 1.1 * w, p.s, p.dt);
-        const tip_front there = ilsai_tip_distance(&law, 1.1 * wide, s, dt);
+        const double w = ilsai_asymptote_width(&p.law, p.V, p.s), wide = ldexp(w, L);
+        const asymptote_front here = ilsai_asymptote_distance(&p.law, 1.1 * w, p.s, p.dt);
+        const asymptote_front there = ilsai_asymptote_distance(&law, 1.1 * wide, s, dt);
         double M[2], N[2];
-        worst = larger(worst, relative(ilsai_tip_width(&law, V, s), wide));
+        worst = larger(worst, relative(ilsai_asymptote_width(&law, V, s), wide));
         worst = larger(worst, relative(there.s, ldexp(here.s, L)));
-        ilsai_tip_moments(&p.law, p.V, p.s, w, &M[0], &M[1]);
-        ilsai_tip_moments(&law, V, s, wide, &N[0], &N[1]);
+        ilsai_asymptote_moments(&p.law, p.V, p.s, w, &M[0], &M[1]);
+        ilsai_asymptote_moments(&law, V, s, wide, &N[0], &N[1]);
         assert_true(N[0] == ldexp(M[0], 2 * L) && N[1] == ldexp(M[1], 3 * L));
     }
     print_message("units by powers of two: off by %.2g\n", worst);
@@ -223,7 +224,7 @@ static void powers_of_two_are_units_to_the_last_bit(void **state) {
 
 static void results_above_the_range_are_refused(void **state) {
     (void)state;
-    const tip_law soft = {1e-300, 1.0, 1e300, 0.0}, thin = {1.0, 1e-300, 0.0, 0.0};
+    const ilsa_material_def soft = {1e-300, 1.0, 1e300, 0.0}, thin = {1.0, 1e-300, 0.0, 0.0};
     double a = UNTOUCHED, b = UNTOUCHED;
     assert_int_equal(ilsa_tip_width(&soft, 1.0, 1.0, &a), ILSA_ERR_VALUE);
     assert_int_equal(ilsa_tip_moments(&thin, 1.0, 1e200, 1.0, &a, &b), ILSA_ERR_VALUE); /* M1 */
@@ -236,7 +237,7 @@ static void results_above_the_range_are_refused(void **state) {
 
 static void results_below_the_range_are_rounded(void **state) {
     (void)state;
-    const tip_law stiff = {1e300, 0.0, 1e-20, 0.0}, little = {1.0, 1e-300, 1e-300, 0.0};
+    const ilsa_material_def stiff = {1e300, 0.0, 1e-20, 0.0}, little = {1.0, 1e-300, 1e-300, 0.0};
     double a, b;
     assert_int_equal(ilsa_tip_width(&stiff, 1e-300, 1.0, &a), ILSA_OK);
     assert_below(fabs(a - 1e-320), DBL_TRUE_MIN);

@@ -17,7 +17,7 @@ int fields_get(fields *f, const ilsa_solver *solver) {
     if (!status)
         status = ilsa_get_trigger_time(solver, &f->trigger);
     if (!status)
-        status = ilsa_get_footprint(solver, &f->kind);
+        status = ilsa_get_cell_kinds(solver, &f->kind);
     if (status)
         fprintf(stderr, "ilsa-run: fields: %s: %s\n", ilsa_status_text(status),
                 ilsa_last_error(solver));

@@ -52,7 +52,7 @@ int survey_write(const char *directory, int number, ilsa_solver *solver) {
     size_t count;
     outfile file;
     char name[NAME_SIZE];
-    ilsa_status status = ilsa_get_regime(solver, &points, &count);
+    ilsa_status status = ilsa_get_survey(solver, &points, &count);
     if (status)
         return solver_failed("survey cells", status, solver);
     if (!outfile_open(&file, directory, numbered_name(name, "survey", number, "csv")))

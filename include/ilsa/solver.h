@@ -220,11 +220,11 @@ ILSA_API ilsa_status ilsa_get_stress(const ilsa_solver *solver, const double **s
  */
 ILSA_API ilsa_status ilsa_get_trigger_time(const ilsa_solver *solver, const double **trigger);
 
-/* What a cell is; the values of ilsa_get_footprint. */
+/* What a cell is; the values of ilsa_get_cell_kinds. */
 enum { ILSA_CELL_EMPTY = 0, ILSA_CELL_TIP = 1, ILSA_CELL_SURVEY = 2, ILSA_CELL_CHANNEL = 3 };
 
 /* The kind of each of the nx * ny cells; survey cells are channel cells with a tip neighbour. */
-ILSA_API ilsa_status ilsa_get_footprint(const ilsa_solver *solver, const unsigned char **kind);
+ILSA_API ilsa_status ilsa_get_cell_kinds(const ilsa_solver *solver, const unsigned char **kind);
 
 /* A point of the front. */
 typedef struct ilsa_front_point {
@@ -253,7 +253,7 @@ typedef struct ilsa_survey_point {
 } ilsa_survey_point;
 
 /* The survey cells: as ilsa_get_front. */
-ILSA_API ilsa_status ilsa_get_regime(ilsa_solver *solver, const ilsa_survey_point **points,
+ILSA_API ilsa_status ilsa_get_survey(ilsa_solver *solver, const ilsa_survey_point **points,
                                      size_t *count);
 
 /* Numbers that describe the whole fracture. */

@@ -74,7 +74,7 @@ static ilsa_tip_regime regime_at(const ilsa_solver *s, int cell) {
     ilsa_tip_regime regime = {.N_k = 1, .x = 1};
     if (cell >= 0) {
         double distance = -s->field.level[cell], V = s->field.speed[cell];
-        double w = ilsai_tip_width(&s->material, V, distance);
+        double w = ilsai_asymptote_width(&s->material, V, distance);
         ilsa_tip_triangle(&s->material, V, distance, w, &regime);
     }
     return regime;
@@ -274,7 +274,7 @@ static size_t count_survey(const ilsa_solver *s) {
     return count;
 }
 
-ilsa_status ilsa_get_regime(ilsa_solver *solver, const ilsa_survey_point **points, size_t *count) {
+ilsa_status ilsa_get_survey(ilsa_solver *solver, const ilsa_survey_point **points, size_t *count) {
     ilsa_status status = check_list(solver, points, count);
     if (status != ILSA_OK) {
         return status;

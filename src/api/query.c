@@ -44,7 +44,7 @@ ilsa_status ilsa_get_trigger_time(const ilsa_solver *solver, const double **trig
     return get_field(solver, solver ? solver->field.trigger : NULL, "trigger", trigger);
 }
 
-ilsa_status ilsa_get_footprint(const ilsa_solver *solver, const unsigned char **kind) {
+ilsa_status ilsa_get_cell_kinds(const ilsa_solver *solver, const unsigned char **kind) {
     ilsa_status status = readable(solver, kind, "kind");
     if (status == ILSA_OK) {
         *kind = solver->field.kind;

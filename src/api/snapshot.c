@@ -3,8 +3,8 @@
 #include <ilsa/snapshot.h>
 
 #include "api/snapshot_check.h"
-#include "step/state.h"
 #include "base/tuning.h"
+#include "step/state.h"
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -296,7 +296,7 @@ static ilsa_status read_tips(stream *io, const ilsa_solver *s, incoming *from) {
     if (io->failed || count < 0 || (size_t)count > left / sizeof(tip_record)) {
         return ILSA_ERR_SNAPSHOT;
     }
-    if (ilsai_tip_records_reserve(&from->tips, count) != ILSA_OK) {
+    if (ilsai_asymptote_records_reserve(&from->tips, count) != ILSA_OK) {
         return ILSA_ERR_MEMORY;
     }
     for (from->tips.count = 0; from->tips.count < count; from->tips.count++) {
@@ -305,7 +305,7 @@ static ilsa_status read_tips(stream *io, const ilsa_solver *s, incoming *from) {
         io->at += sizeof *record;
         int after = from->tips.count > 0 ? record[-1].cell : -1;
         if (record->cell <= after ||
-            !ilsai_image_record_is_sound(record, ilsai_mesh_cells(&s->mesh), from->now.time)) {
+            !ilsai_snapshot_record_is_sound(record, ilsai_mesh_cells(&s->mesh), from->now.time)) {
             return ILSA_ERR_SNAPSHOT;
         }
     }
@@ -329,7 +329,7 @@ static ilsa_status read_head(stream *io, const ilsa_solver *s, incoming *from) {
     }
     from->mesh = (ilsa_mesh_def){id.nx, id.ny, id.dx, id.dy};
     pass(io, &from->now, sizeof from->now);
-    if (io->failed || !ilsai_image_state_is_sound(&from->now, &from->mesh) ||
+    if (io->failed || !ilsai_snapshot_state_is_sound(&from->now, &from->mesh) ||
         !is_viscosity(s, from->now.mu_prime)) {
         return ILSA_ERR_SNAPSHOT;
     }
@@ -342,9 +342,9 @@ static ilsa_status read_head(stream *io, const ilsa_solver *s, incoming *from) {
 static int fields_fit(const ilsa_solver *s, const stream *io, const box *region,
                       const box *footprint) {
     stream count = {.at = io->at, .size = SIZE_MAX};
-    image_fields seen = {io->in + io->at, *region, *footprint, ilsai_has_leakoff(s)};
+    snapshot_fields seen = {io->in + io->at, *region, *footprint, ilsai_has_leakoff(s)};
     pass_fields(&count, s, region, &s->field);
-    return count.at == io->size && ilsai_image_fields_are_sound(&seen);
+    return count.at == io->size && ilsai_snapshot_fields_are_sound(&seen);
 }
 
 /* An elasticity for another cell size, NULL if the size is the same. */
@@ -389,7 +389,7 @@ static ilsa_status finish(ilsa_solver *s, incoming *from, stream *io) {
     like.mesh = from->mesh;
     box region = ilsai_solver_region(&like, &from->now.footprint);
     if (!fields_fit(&like, io, &region, &from->now.footprint) ||
-        ilsai_stress_fill(from->stress, &from->mesh, s->gain) != ILSA_OK) {
+        ilsai_stress_fill(from->stress, &from->mesh, s->source_term) != ILSA_OK) {
         return ILSA_ERR_SNAPSHOT;
     }
     ilsa_status status = other_elasticity(s, &from->mesh, &e);

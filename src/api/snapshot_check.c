@@ -20,7 +20,7 @@ static int is_inside(const box *b, const ilsa_mesh_def *mesh) {
            b->y1 < mesh->ny - 1;
 }
 
-int ilsai_image_state_is_sound(const state *now, const ilsa_mesh_def *mesh) {
+int ilsai_snapshot_state_is_sound(const state *now, const ilsa_mesh_def *mesh) {
     return now->started == 1 && is_flag(now->mirror_x) && is_flag(now->mirror_y) &&
            is_within(now->time, ILSAI_MAGNITUDE_LEAST) && now->dt_limit > 0 &&
            is_within(now->injected, 0) && is_within(now->leaked, 0) && now->fracture > 0 &&
@@ -30,10 +30,10 @@ int ilsai_image_state_is_sound(const state *now, const ilsa_mesh_def *mesh) {
            is_inside(&now->footprint, mesh);
 }
 
-int ilsai_image_record_is_sound(const tip_record *record, size_t cells, double now) {
-    const tipcell_history *h = &record->history;
+int ilsai_snapshot_record_is_sound(const tip_record *record, size_t cells, double now) {
+    const tip_cell_history *h = &record->history;
     int sound = record->cell >= 0 && (size_t)record->cell < cells && h->count >= 1 &&
-                h->count <= TIPCELL_KNOTS;
+                h->count <= TIP_CELL_KNOTS;
     for (int k = 0; sound && k < h->count; k++) {
         double t = k > 0 ? h->t[k - 1] : 0, ell = k > 0 ? h->ell[k - 1] : 0;
         sound = h->t[k] >= t && h->t[k] <= now && is_within(h->ell[k], ell);
@@ -43,39 +43,39 @@ int ilsai_image_record_is_sound(const tip_record *record, size_t cells, double n
 
 enum { WIDTH, PRESSURE, LEVEL, SPEED, NUMBERS, TRIGGER = NUMBERS, SPREAD, LEAKED };
 
-static size_t count_of(const image_fields *f) {
+static size_t count_of(const snapshot_fields *f) {
     return ilsai_box_columns(&f->region) * ilsai_box_rows(&f->region);
 }
 
-static double number(const image_fields *f, int which, size_t k) {
+static double number(const snapshot_fields *f, int which, size_t k) {
     size_t count = count_of(f), kinds = which < NUMBERS ? 0 : count;
     double value;
     memcpy(&value, f->at + kinds + ((size_t)which * count + k) * sizeof value, sizeof value);
     return value;
 }
 
-static int kind_of(const image_fields *f, size_t k) {
+static int kind_of(const snapshot_fields *f, size_t k) {
     return f->at[NUMBERS * count_of(f) * sizeof(double) + k];
 }
 
 /* A tip cell may hold nothing: one that the front has just touched. */
-static int wet_is_sound(const image_fields *f, size_t k) {
+static int wet_is_sound(const snapshot_fields *f, size_t k) {
     double level = number(f, LEVEL, k);
     int kind = kind_of(f, k);
     return (kind == ILSA_CELL_TIP || number(f, WIDTH, k) > 0) && is_within(level, -MOST) &&
            (kind == ILSA_CELL_TIP || level < 0);
 }
 
-static int dry_is_sound(const image_fields *f, size_t k) {
+static int dry_is_sound(const snapshot_fields *f, size_t k) {
     return number(f, WIDTH, k) == 0 && number(f, PRESSURE, k) == 0 && number(f, LEVEL, k) > 0;
 }
 
-static int leak_is_sound(const image_fields *f, size_t k) {
+static int leak_is_sound(const snapshot_fields *f, size_t k) {
     return number(f, TRIGGER, k) >= 0 && is_within(number(f, SPREAD, k), 0) &&
            is_within(number(f, LEAKED, k), 0);
 }
 
-static int cell_is_sound(const image_fields *f, size_t k) {
+static int cell_is_sound(const snapshot_fields *f, size_t k) {
     int kind = kind_of(f, k);
     return kind <= ILSA_CELL_CHANNEL && is_within(number(f, WIDTH, k), 0) &&
            is_within(fabs(number(f, PRESSURE, k)), 0) && is_within(number(f, SPEED, k), 0) &&
@@ -84,14 +84,14 @@ static int cell_is_sound(const image_fields *f, size_t k) {
 }
 
 /* The footprint lies inside the region, so that its cells have all their neighbours. */
-static int rim_is_sound(const image_fields *f, size_t k) {
+static int rim_is_sound(const snapshot_fields *f, size_t k) {
     size_t row = ilsai_box_columns(&f->region);
     int rim = kind_of(f, k - 1) < ILSA_CELL_SURVEY || kind_of(f, k + 1) < ILSA_CELL_SURVEY ||
               kind_of(f, k - row) < ILSA_CELL_SURVEY || kind_of(f, k + row) < ILSA_CELL_SURVEY;
     return kind_of(f, k) == (rim ? ILSA_CELL_SURVEY : ILSA_CELL_CHANNEL);
 }
 
-int ilsai_image_fields_are_sound(const image_fields *f) {
+int ilsai_snapshot_fields_are_sound(const snapshot_fields *f) {
     int sound = 1, survey = 0;
     size_t k = 0;
     for (int j = f->region.y0; sound && j <= f->region.y1; j++) {

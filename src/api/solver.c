@@ -1,7 +1,7 @@
+#include "base/tuning.h"
 #include "model/material.h"
 #include "step/start.h"
 #include "step/state.h"
-#include "base/tuning.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -104,8 +104,8 @@ static ilsa_status copy_stress(ilsa_solver *s, const ilsa_stress *stress) {
 }
 
 /* The material without the processes that the tip model leaves out. */
-static tip_law asymptote_of(const ilsa_material_def *material, ilsa_tip_model tip) {
-    tip_law law = *material;
+static ilsa_material_def asymptote_of(const ilsa_material_def *material, ilsa_tip_model tip) {
+    ilsa_material_def law = *material;
     law.C_prime = tip == ILSA_TIP_FULL ? law.C_prime : 0;
     law.mu_prime = tip == ILSA_TIP_TOUGHNESS ? 0 : law.mu_prime;
     return law;
@@ -113,7 +113,7 @@ static tip_law asymptote_of(const ilsa_material_def *material, ilsa_tip_model ti
 
 void ilsai_solver_set_viscosity(ilsa_solver *s, double mu_prime) {
     s->now.mu_prime = s->material.mu_prime = mu_prime;
-    s->asymptote = asymptote_of(&s->material, s->def.tip);
+    s->tip_material = asymptote_of(&s->material, s->def.tip);
 }
 
 static void set_options(ilsa_solver *s, const ilsa_solver_def *def) {
@@ -126,7 +126,7 @@ static void set_options(ilsa_solver *s, const ilsa_solver_def *def) {
     s->def.sources = NULL;
     s->mesh = def->mesh->def;
     s->material = def->material->def;
-    s->asymptote = asymptote_of(&s->material, def->tip);
+    s->tip_material = asymptote_of(&s->material, def->tip);
     s->inviscid = s->material.mu_prime == 0;
     s->step_cells = def->step_cells > 0 ? def->step_cells : step[def->level - 1];
     s->tolerance = def->tolerance > 0 ? def->tolerance : tolerance[def->level - 1];
@@ -136,16 +136,16 @@ static ilsa_status allocate(ilsa_solver *s) {
     size_t count = ilsai_mesh_cells(&s->mesh);
     int leak_off = ilsai_has_leakoff(s);
     s->sigma = malloc(count * sizeof(double));
-    s->gain = malloc(count * sizeof(double));
+    s->source_term = malloc(count * sizeof(double));
     s->leak = malloc(count * sizeof(double));
-    s->relief = leak_off ? calloc(count, sizeof(double)) : NULL;
+    s->retained = leak_off ? calloc(count, sizeof(double)) : NULL;
     s->contact = calloc(count, 1);
-    s->edge = malloc(count * sizeof(double));
-    s->march = ilsai_front_create();
-    s->flow = ilsai_coupled_create(&s->mesh);
-    s->mixer = ilsai_anderson_create(ILSAI_ANDERSON_DEPTH);
-    if (!s->sigma || !s->gain || !s->leak || (leak_off && !s->relief) || !s->contact || !s->edge ||
-        !s->march || !s->flow || !s->mixer ||
+    s->self_correction = malloc(count * sizeof(double));
+    s->march = ilsai_march_create();
+    s->coupled = ilsai_coupled_create(&s->mesh);
+    s->acceleration = ilsai_anderson_create(ILSAI_ANDERSON_DEPTH);
+    if (!s->sigma || !s->source_term || !s->leak || (leak_off && !s->retained) || !s->contact ||
+        !s->self_correction || !s->march || !s->coupled || !s->acceleration ||
         ilsai_fields_create(&s->field, &s->mesh, leak_off) != ILSA_OK ||
         ilsai_fields_create(&s->trial, &s->mesh, 0) != ILSA_OK) {
         return ILSA_ERR_MEMORY;
@@ -155,7 +155,7 @@ static ilsa_status allocate(ilsa_solver *s) {
 
 static ilsa_status start_threads(ilsa_solver *s) {
     if (s->def.threads > 1) {
-        s->threads = ilsai_team_create(s->def.threads);
+        s->threads = ilsai_thread_pool_create(s->def.threads);
         if (!s->threads) {
             return ilsai_fail(ilsai_thread_error(), ILSA_ERR_MEMORY,
                               "no memory for %d threads, or the system allows no more",
@@ -214,25 +214,25 @@ void ilsa_solver_destroy(ilsa_solver **solver) {
         return;
     }
     ilsa_solver *s = *solver;
-    ilsai_team_destroy(&s->threads);
+    ilsai_thread_pool_destroy(&s->threads);
     ilsa_stress_destroy(&s->stress);
     ilsai_fields_destroy(&s->field);
     ilsai_fields_destroy(&s->trial);
-    ilsai_front_destroy(&s->march);
-    ilsai_coupled_destroy(&s->flow);
-    ilsai_anderson_destroy(&s->mixer);
+    ilsai_march_destroy(&s->march);
+    ilsai_coupled_destroy(&s->coupled);
+    ilsai_anderson_destroy(&s->acceleration);
     ilsai_elasticity_destroy(&s->elastic);
     free(s->sources);
     free(s->tips.at);
     free(s->trial_tips.at);
-    free(s->gain);
+    free(s->source_term);
     free(s->leak);
-    free(s->relief);
+    free(s->retained);
     free(s->contact);
-    free(s->edge);
-    free(s->seeds);
-    free(s->responses);
-    free(s->by_advance);
+    free(s->self_correction);
+    free(s->survey_cells);
+    free(s->sensitivities);
+    free(s->width_slope);
     free(s->distance);
     free(s->next_distance);
     free(s->sigma);
@@ -261,7 +261,7 @@ static ilsa_material_def start_material(const ilsa_solver *s) {
 }
 
 /* Starts from a solution that was found for a radius or a time; what says which and its value. */
-static ilsa_status start(ilsa_solver *s, ilsa_status found, const radial_solution *solution,
+static ilsa_status start(ilsa_solver *s, ilsa_status found, const penny_solution *solution,
                          const char *what, double value) {
     if (found != ILSA_OK) {
         return ilsai_fail(&s->error, found, "%s = %g: no penny-shaped fracture can be found", what,
@@ -288,9 +288,9 @@ ilsa_status ilsa_start_radial(ilsa_solver *solver, double radius) {
     if (status != ILSA_OK) {
         return status;
     }
-    radial_solution solution;
+    penny_solution solution;
     ilsa_material_def material = start_material(solver);
-    status = ilsai_radial_at_radius(&material, solver->sources[0].def.rate, radius, &solution);
+    status = ilsai_penny_at_radius(&material, solver->sources[0].def.rate, radius, &solution);
     return start(solver, status, &solution, "radius", radius);
 }
 
@@ -299,9 +299,9 @@ ilsa_status ilsa_start_radial_at(ilsa_solver *solver, double time) {
     if (status != ILSA_OK) {
         return status;
     }
-    radial_solution solution;
+    penny_solution solution;
     ilsa_material_def material = start_material(solver);
-    status = ilsai_radial_at_time(&material, solver->sources[0].def.rate, time, &solution);
+    status = ilsai_penny_at_time(&material, solver->sources[0].def.rate, time, &solution);
     return start(solver, status, &solution, "time", time);
 }
 

@@ -26,9 +26,9 @@
 #define team_pause() ((void)0)
 #endif
 
-struct team {
+struct thread_pool {
     /* the loop at work: written while nobody has a part of it, read by those who have */
-    team_function *function;
+    pool_function *function;
     void *context;
     int count, parts;
 
@@ -60,7 +60,7 @@ static int end_of(uint_least64_t offer) {
  * Takes a part, -1 if there is none. The caller takes the first one and the others the last: in
  * one loop after the other the same threads work on about the same turns.
  */
-static int take(team *t, int caller) {
+static int take(thread_pool *t, int caller) {
     uint_least64_t offer = atomic_load(&t->offer), rest;
     do {
         if (first_of(offer) == end_of(offer)) {
@@ -71,24 +71,24 @@ static int take(team *t, int caller) {
     return caller ? first_of(offer) : end_of(offer) - 1;
 }
 
-static int begin_of(const team *t, int part) {
+static int begin_of(const thread_pool *t, int part) {
     return (int)((int64_t)t->count * part / t->parts);
 }
 
-static void work(team *t, int caller) {
+static void work(thread_pool *t, int caller) {
     for (int part = take(t, caller); part >= 0; part = take(t, caller)) {
         t->function(t->context, begin_of(t, part), begin_of(t, part + 1));
         atomic_fetch_sub(&t->unfinished, 1);
     }
 }
 
-static int has_news(team *t) {
+static int has_news(thread_pool *t) {
     uint_least64_t offer = atomic_load(&t->offer);
     return first_of(offer) != end_of(offer) || atomic_load(&t->ending);
 }
 
 /* `asleep` is raised before the last look, and read after an offer: one of the two is seen. */
-static void sleep_until_news(team *t) {
+static void sleep_until_news(thread_pool *t) {
     pthread_mutex_lock(&t->lock);
     atomic_fetch_add(&t->asleep, 1);
     while (!has_news(t)) {
@@ -98,7 +98,7 @@ static void sleep_until_news(team *t) {
     pthread_mutex_unlock(&t->lock);
 }
 
-static void wake(team *t) {
+static void wake(thread_pool *t) {
     if (atomic_load(&t->asleep) > 0) {
         pthread_mutex_lock(&t->lock);
         pthread_cond_broadcast(&t->news);
@@ -107,7 +107,7 @@ static void wake(team *t) {
 }
 
 static void *worker_main(void *argument) {
-    team *t = argument;
+    thread_pool *t = argument;
     while (!atomic_load(&t->ending)) {
         work(t, 0);
         for (double start = ilsai_clock(); !has_news(t) && ilsai_clock() - start < TEAM_AWAKE;) {
@@ -121,7 +121,7 @@ static void *worker_main(void *argument) {
 }
 
 /* Signals are the host's: its own threads get them. */
-static int start_workers(team *t, int count) {
+static int start_workers(thread_pool *t, int count) {
     sigset_t all, own;
     int failed = 0;
     sigfillset(&all);
@@ -136,9 +136,9 @@ static int start_workers(team *t, int count) {
     return failed ? -1 : 0;
 }
 
-team *ilsai_team_create(int threads) {
+thread_pool *ilsai_thread_pool_create(int threads) {
     size_t workers = (size_t)threads - 1;
-    team *t = calloc(1, sizeof *t + workers * sizeof *t->worker);
+    thread_pool *t = calloc(1, sizeof *t + workers * sizeof *t->worker);
     if (!t) {
         return NULL;
     }
@@ -156,12 +156,12 @@ team *ilsai_team_create(int threads) {
         return NULL;
     }
     if (start_workers(t, (int)workers) != 0) {
-        ilsai_team_destroy(&t);
+        ilsai_thread_pool_destroy(&t);
     }
     return t;
 }
 
-void ilsai_team_destroy(team **t) {
+void ilsai_thread_pool_destroy(thread_pool **t) {
     if (!*t) {
         return;
     }
@@ -177,7 +177,7 @@ void ilsai_team_destroy(team **t) {
 }
 
 /* Threads that still have a part are at work: they need no more than their turn on a core. */
-static void wait_for_others(team *t) {
+static void wait_for_others(thread_pool *t) {
     for (int look = 0; atomic_load(&t->unfinished) > 0; look++) {
         if (look < TEAM_LOOKS) {
             team_pause();
@@ -187,7 +187,8 @@ static void wait_for_others(team *t) {
     }
 }
 
-void ilsai_team_run(team *t, team_function *function, void *context, int count, int least) {
+void ilsai_thread_pool_run(thread_pool *t, pool_function *function, void *context, int count,
+                           int least) {
     int most = t ? TEAM_PARTS * (t->workers + 1) : 1;
     int parts = t && count / least < most ? count / least : most;
     if (parts < 2) {

@@ -5,21 +5,22 @@
 #ifndef ILSAI_THREAD_POOL_H
 #define ILSAI_THREAD_POOL_H
 
-typedef struct team team;
+typedef struct thread_pool thread_pool;
 
 /* Turns first .. end - 1 of a loop. It may not share a loop itself. */
-typedef void team_function(void *context, int first, int end);
+typedef void pool_function(void *context, int first, int end);
 
 /* The caller and threads - 1 others, threads >= 2, which are started. NULL on failure. */
-team *ilsai_team_create(int threads);
+thread_pool *ilsai_thread_pool_create(int threads);
 
 /* Ends the threads and waits for them. *t may be NULL. */
-void ilsai_team_destroy(team **t);
+void ilsai_thread_pool_destroy(thread_pool **t);
 
 /*
  * Runs turns 0 .. count - 1 in parts of at least `least` turns, all of them on return. A NULL team,
  * and a loop too short for two parts, runs in the caller. One caller at a time.
  */
-void ilsai_team_run(team *t, team_function *function, void *context, int count, int least);
+void ilsai_thread_pool_run(thread_pool *t, pool_function *function, void *context, int count,
+                           int least);
 
 #endif

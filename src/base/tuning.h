@@ -34,7 +34,7 @@
 
 /* Front: from this pass on the cells at the front no longer answer within the Newton system, and
  * the distances are accelerated instead: a step that has not converged by then goes to and fro. */
-#define ILSAI_RESPONSE_PASSES 16
+#define ILSAI_SENSITIVITY_PASSES 16
 /* Front: volume leaking in a step over that in the fracture from which on the front moves with the
  * widths in the first pass too. */
 #define ILSAI_LEAK_FAST 3.0
@@ -44,7 +44,7 @@
 #define ILSAI_SETTLE      5e-3
 /* Front: the most that the front's move takes away from a self term in Newton's matrix, as a part.
  */
-#define ILSAI_EDGE_GIVES 0.1
+#define ILSAI_SELF_TERM_GIVES 0.1
 /* Front: how sharply the widths of a pass are found, as a part of the front's last change; and,
  * over the front's tolerance, where this is below those of the levels: a cell that may be tip or
  * channel remains what the passes have made of it, which then must not depend on the solver. */
@@ -95,12 +95,12 @@
 #define ILSAI_EDGE_CELLS 1e-9
 /* Shape of the front: how far along it a parabola is fitted, in cells; cosine above which normals
  * belong to the same stretch; largest curvature, per cell. */
-#define ILSAI_SHAPE_REACH 3.5
-#define ILSAI_SHAPE_ALIKE 0.3
+#define ILSAI_GEOMETRY_REACH 3.5
+#define ILSAI_GEOMETRY_ALIKE 0.3
 /* Least number of points of such a fit, and how far to both sides they must go, as a part of it. */
-#define ILSAI_SHAPE_POINTS    4
-#define ILSAI_SHAPE_SPAN      0.4
-#define ILSAI_SHAPE_CURVATURE 0.5
+#define ILSAI_GEOMETRY_POINTS    4
+#define ILSAI_GEOMETRY_SPAN      0.4
+#define ILSAI_GEOMETRY_CURVATURE 0.5
 /* Survey: secant steps to the distance that agrees with the second term, the same where the stress
  * jumps, the change at which they end, in tolerances of the front, and the largest slope that they
  * believe. */
@@ -109,15 +109,15 @@
 #define ILSAI_SURVEY_CLOSE   1e-3
 #define ILSAI_SURVEY_SLOPE   0.7
 /* Survey: how far behind the cell steps of the stress are looked for, in cells. */
-#define ILSAI_JUMP_REACH 6.0
+#define ILSAI_STRESS_STEP_REACH 6.0
 /* Survey: how far beyond such a step the front feels half of its depth, in cells. */
-#define ILSAI_JUMP_SOFT 0.05
+#define ILSAI_STRESS_STEP_SOFT 0.05
 /* Survey: least part of a width that is left for the asymptote once such steps have theirs. */
-#define ILSAI_JUMP_LEFT 0.02
+#define ILSAI_STRESS_STEP_LEFT 0.02
 /* Front: part of a survey cell's width that a predicted front's stress steps may add, and the
  * halvings that find how far that is. */
-#define ILSAI_JUMP_PREDICTED  0.3
-#define ILSAI_JUMP_BISECTIONS 30
+#define ILSAI_STRESS_STEP_PREDICTED  0.3
+#define ILSAI_STRESS_STEP_BISECTIONS 30
 /* Width behind the tip: largest part that the term after the asymptote may have. */
 #define ILSAI_NEXT_TERM_MAX 0.3
 

@@ -4,28 +4,28 @@
 #include <stdlib.h>
 #include <string.h>
 
-ilsa_status ilsai_active_create(active *a, const ilsa_mesh_def *mesh) {
+ilsa_status ilsai_unknowns_create(unknowns *a, const ilsa_mesh_def *mesh) {
     memset(a, 0, sizeof *a);
     a->mesh_cells = (size_t)mesh->nx * (size_t)mesh->ny;
-    a->slot = malloc(a->mesh_cells * sizeof *a->slot);
-    if (!a->slot) {
+    a->number = malloc(a->mesh_cells * sizeof *a->number);
+    if (!a->number) {
         return ILSA_ERR_MEMORY;
     }
     for (size_t k = 0; k < a->mesh_cells; k++) {
-        a->slot[k] = -1;
+        a->number[k] = -1;
     }
     return ILSA_OK;
 }
 
-void ilsai_active_destroy(active *a) {
+void ilsai_unknowns_destroy(unknowns *a) {
     free(a->cell);
     free(a->unknown);
     free(a->neighbour);
-    free(a->slot);
+    free(a->number);
     memset(a, 0, sizeof *a);
 }
 
-static ilsa_status reserve(active *a, size_t count) {
+static ilsa_status reserve(unknowns *a, size_t count) {
     if (count <= (size_t)a->capacity) {
         return ILSA_OK;
     }
@@ -43,22 +43,22 @@ static ilsa_status reserve(active *a, size_t count) {
     return ILSA_OK;
 }
 
-static void forget(active *a) {
+static void forget(unknowns *a) {
     for (int k = 0; k < a->count; k++) {
-        a->slot[a->cell[k]] = -1;
+        a->number[a->cell[k]] = -1;
     }
     a->count = 0;
 }
 
-static void add(active *a, int cell, unsigned char kind) {
+static void add(unknowns *a, int cell, unsigned char kind) {
     if (kind != ILSA_CELL_EMPTY) {
         a->cell[a->count] = cell;
         a->unknown[a->count] = kind == ILSA_CELL_TIP ? UNKNOWN_PRESSURE : UNKNOWN_WIDTH;
-        a->slot[cell] = a->count++;
+        a->number[cell] = a->count++;
     }
 }
 
-static void number_cells(active *a, const grid *g, const unsigned char *kind, const box *part) {
+static void number_cells(unknowns *a, const grid *g, const unsigned char *kind, const box *part) {
     if (part->x1 - part->x0 > part->y1 - part->y0) {
         for (int i = part->x0; i <= part->x1; i++) {
             for (int j = part->y0; j <= part->y1; j++) {
@@ -76,18 +76,18 @@ static void number_cells(active *a, const grid *g, const unsigned char *kind, co
     }
 }
 
-static void find_neighbours(active *a, const grid *g) {
+static void find_neighbours(unknowns *a, const grid *g) {
     for (int k = 0; k < a->count; k++) {
         int i = a->cell[k] % g->nx, j = a->cell[k] / g->nx;
         for (int face = 0; face < GRID_FACES; face++) {
             int cell = ilsai_grid_neighbour(g, i, j, face);
-            a->neighbour[GRID_FACES * k + face] = cell < 0 ? -1 : a->slot[cell];
+            a->neighbour[GRID_FACES * k + face] = cell < 0 ? -1 : a->number[cell];
         }
     }
 }
 
-ilsa_status ilsai_active_set(active *a, const grid *g, const box *footprint,
-                             const unsigned char *kind) {
+ilsa_status ilsai_unknowns_set(unknowns *a, const grid *g, const box *footprint,
+                               const unsigned char *kind) {
     box part = ilsai_box_fold(g, footprint);
     size_t size = ilsai_box_columns(&part) * ilsai_box_rows(&part);
     forget(a);

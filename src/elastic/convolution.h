@@ -30,7 +30,7 @@ void ilsai_fft_destroy(fft **f);
  * stride apart; every bit of p is a function of cx, cy and w. The team shares the work. Allocates
  * nothing.
  */
-void ilsai_fft_convolve(fft *f, team *threads, int bx, int by, const double *w, double *p,
+void ilsai_fft_convolve(fft *f, thread_pool *threads, int bx, int by, const double *w, double *p,
                         size_t stride);
 
 #endif

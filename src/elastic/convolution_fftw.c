@@ -494,12 +494,12 @@ static void transform_back(void *context, int first, int end) {
     }
 }
 
-void ilsai_fft_convolve(fft *f, team *threads, int bx, int by, const double *w, double *p,
+void ilsai_fft_convolve(fft *f, thread_pool *threads, int bx, int by, const double *w, double *p,
                         size_t stride) {
     int columns = f->turned ? by : bx, rows = f->turned ? bx : by;
     product c = {f, (size_t)columns, (size_t)rows, steps_of(f, stride), w, p};
     int least = 1 + FFT_LEAST / (FFT_PART * f->cx);
-    ilsai_team_run(threads, transform_rows, &c, parts_of(f->cy), least);
-    ilsai_team_run(threads, convolve_columns, &c, parts_of(f->cx + 1), least);
-    ilsai_team_run(threads, transform_back, &c, parts_of(rows), least);
+    ilsai_thread_pool_run(threads, transform_rows, &c, parts_of(f->cy), least);
+    ilsai_thread_pool_run(threads, convolve_columns, &c, parts_of(f->cx + 1), least);
+    ilsai_thread_pool_run(threads, transform_back, &c, parts_of(rows), least);
 }

@@ -18,7 +18,7 @@ void ilsai_fft_destroy(fft **f) {
     *f = NULL;
 }
 
-void ilsai_fft_convolve(fft *f, team *threads, int bx, int by, const double *w, double *p,
+void ilsai_fft_convolve(fft *f, thread_pool *threads, int bx, int by, const double *w, double *p,
                         size_t stride) {
     (void)f;
     (void)threads;

@@ -1,6 +1,6 @@
 #include "elastic/elasticity.h"
-#include "elastic/convolution_blas.h"
 #include "elastic/convolution.h"
+#include "elastic/convolution_blas.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -68,10 +68,10 @@ typedef struct engine {
 struct elasticity {
     double E_prime, dx, dy;
     int use_fft;
-    int bx, by;      /* the box in use */
-    edge_table edge; /* made when first asked for */
+    int bx, by;           /* the box in use */
+    self_term_table edge; /* made when first asked for */
     engine engine;
-    team *threads; /* that share a product, or NULL */
+    thread_pool *threads; /* that share a product, or NULL */
 };
 
 /*
@@ -173,19 +173,19 @@ ilsa_product ilsai_elasticity_method(const elasticity *e) {
     return e->use_fft ? ILSA_PRODUCT_FFT : ILSA_PRODUCT_BLAS;
 }
 
-void ilsai_elasticity_share(elasticity *e, team *threads) {
+void ilsai_elasticity_share(elasticity *e, thread_pool *threads) {
     e->threads = threads;
 }
 
-void ilsai_elasticity_set_edge(elasticity *e) {
+void ilsai_elasticity_make_self_terms(elasticity *e) {
     if (e->edge.dx == 0)
-        ilsai_edge_table(&e->edge, e->dx, e->dy);
+        ilsai_self_term_table(&e->edge, e->dx, e->dy);
 }
 
-edge_term ilsai_elasticity_edge(const elasticity *e, const edge_front *front) {
+self_term ilsai_elasticity_self_term(const elasticity *e, const self_term_front *front) {
     const double self = e->E_prime * ilsai_kernel(0, 0, e->dx, e->dy);
-    edge_term term = ilsai_edge_lookup(&e->edge, front);
-    return (edge_term){self * term.value, self * term.slope};
+    self_term term = ilsai_self_term_lookup(&e->edge, front);
+    return (self_term){self * term.value, self * term.slope};
 }
 
 double ilsai_elasticity_entry(const elasticity *e, int i, int j) {

@@ -8,9 +8,9 @@
 #ifndef ILSAI_ELASTICITY_H
 #define ILSAI_ELASTICITY_H
 
-#include "elastic/self_term.h"
 #include "base/mirror.h"
 #include "base/thread_pool.h"
+#include "elastic/self_term.h"
 #include <ilsa/solver.h>
 
 /* C of (4.6) divided by E' for a cell offset (i, j) of cells dx by dy, free of cancellation. */
@@ -49,14 +49,14 @@ void ilsai_elasticity_multiply(elasticity *e, const double *w, double *p, size_t
 ilsa_product ilsai_elasticity_method(const elasticity *e);
 
 /* From now on the team, which must outlive e or the next call of this, shares the products. */
-void ilsai_elasticity_share(elasticity *e, team *threads);
+void ilsai_elasticity_share(elasticity *e, thread_pool *threads);
 
 /*
  * What C(0, 0) lacks in a cell beside the front, and its derivative by the distance of the front;
- * after ilsai_elasticity_set_edge, which is cheap but for the first call.
+ * after ilsai_elasticity_make_self_terms, which is cheap but for the first call.
  */
-void ilsai_elasticity_set_edge(elasticity *e);
-edge_term ilsai_elasticity_edge(const elasticity *e, const edge_front *front);
+void ilsai_elasticity_make_self_terms(elasticity *e);
+self_term ilsai_elasticity_self_term(const elasticity *e, const self_term_front *front);
 
 /* Entry C(i, j) between two cells of the box, or one and an image, from the table of the box. */
 double ilsai_elasticity_entry(const elasticity *e, int i, int j);

@@ -1,13 +1,13 @@
 #include "elastic/self_term.h"
 
-#include "elastic/elasticity.h"
 #include "base/gauss.h"
+#include "elastic/elasticity.h"
 #include <math.h>
 
 static const double pi = 3.14159265358979323846;
 
 /* Half the cell's extents along the normal, the smaller of which counts as nothing below this. */
-#define EDGE_NARROW 1e-3
+#define SELF_TERM_NARROW 1e-3
 
 static double power_positive(double x, double exponent) {
     return x > 0 ? pow(x, exponent) : 0;
@@ -22,7 +22,7 @@ static double mean_power(double s, double a, double b, double lambda) {
     if (s + wide + narrow <= 0) {
         return 0;
     }
-    if (narrow < EDGE_NARROW * wide) {
+    if (narrow < SELF_TERM_NARROW * wide) {
         double exponent = lambda + 1;
         return (power_positive(s + wide, exponent) - power_positive(s - wide, exponent)) /
                (2 * wide * exponent);
@@ -35,11 +35,11 @@ static double mean_power(double s, double a, double b, double lambda) {
 }
 
 /* Where the cell reaches less than this part of s the mean is its expansion to the second order. */
-#define EDGE_FAR 0.2
+#define SELF_TERM_FAR 0.2
 
-double ilsai_edge_mean(double dx, double dy, const edge_front *front) {
+double ilsai_self_term_mean(double dx, double dy, const self_term_front *front) {
     double a = 0.5 * dx * front->cos_a, b = 0.5 * dy * front->sin_a, s = front->s;
-    if (a + b < EDGE_FAR * s) {
+    if (a + b < SELF_TERM_FAR * s) {
         return 1 - front->exponent * (1 - front->exponent) * (a * a + b * b) / (6 * s * s);
     }
     return mean_power(front->s, a, b, front->exponent) * pow(front->s, -front->exponent);
@@ -48,8 +48,8 @@ double ilsai_edge_mean(double dx, double dy, const edge_front *front) {
 /* ---- The sum over the lattice ------------------------------------------------------------- */
 
 /* Cells to each side that are summed one by one: so many cell sizes, but not more than a limit. */
-#define EDGE_REACH      3.5
-#define EDGE_CELLS_MOST 40
+#define SELF_TERM_REACH      3.5
+#define SELF_TERM_CELLS_MOST 40
 
 /* Integral of (s - R q)_+^lambda R^-2 over R > rho: with u = 1 / R and u = from + (to - from) t^6,
  * which leaves both ends smooth. */
@@ -66,7 +66,7 @@ static double along_ray(double s, double q, double rho, double lambda) {
 }
 
 /* Pressure over E' at the centre from the widths beyond a rectangle of half sides x and y. */
-static double beyond(const edge_front *f, double x, double y) {
+static double beyond(const self_term_front *f, double x, double y) {
     double corner = atan2(y, x), front = atan2(f->sin_a, f->cos_a);
     /* where the ray changes its side of the rectangle or turns from the front */
     double stop[7] = {-corner,
@@ -94,10 +94,10 @@ static double beyond(const edge_front *f, double x, double y) {
     return -sum / (8 * pi);
 }
 
-double ilsai_edge_exact(double dx, double dy, const edge_front *f) {
-    double size = EDGE_REACH * fmax(dx, dy), a = 0.5 * dx * f->cos_a, b = 0.5 * dy * f->sin_a;
-    long nx = lround(fmin(size / dx, EDGE_CELLS_MOST)),
-         ny = lround(fmin(size / dy, EDGE_CELLS_MOST));
+double ilsai_self_term_exact(double dx, double dy, const self_term_front *f) {
+    double size = SELF_TERM_REACH * fmax(dx, dy), a = 0.5 * dx * f->cos_a, b = 0.5 * dy * f->sin_a;
+    long nx = lround(fmin(size / dx, SELF_TERM_CELLS_MOST)),
+         ny = lround(fmin(size / dy, SELF_TERM_CELLS_MOST));
     double exact = 0.25 * f->exponent / tan(pi * f->exponent) * pow(f->s, f->exponent - 1);
     double sum = beyond(f, ((double)nx + 0.5) * dx, ((double)ny + 0.5) * dy);
     for (long j = -ny; j <= ny; j++) {
@@ -116,31 +116,32 @@ double ilsai_edge_exact(double dx, double dy, const edge_front *f) {
  * cell has just filled and 0 far from the front, where the term is 0; a little beyond 1 for a
  * direction that is not quite that of the cell. Directions: by the part of full that is along y.
  */
-#define EDGE_U_STEP 0.05
+#define SELF_TERM_U_STEP 0.05
 
 static double exponent_at(int k) {
     return 0.5 + k / 12.0;
 }
 
-static edge_front front_at(double dx, double dy, int exponent, int angle, int distance) {
-    double part = angle / (EDGE_ANGLES - 1.0), x = (1 - part) / dx, y = part / dy, r = hypot(x, y);
-    edge_front f = {.cos_a = x / r, .sin_a = y / r, .exponent = exponent_at(exponent)};
-    f.s = (dx * f.cos_a + dy * f.sin_a) / (2 * EDGE_U_STEP * distance);
+static self_term_front front_at(double dx, double dy, int exponent, int angle, int distance) {
+    double part = angle / (SELF_TERM_ANGLES - 1.0), x = (1 - part) / dx, y = part / dy,
+           r = hypot(x, y);
+    self_term_front f = {.cos_a = x / r, .sin_a = y / r, .exponent = exponent_at(exponent)};
+    f.s = (dx * f.cos_a + dy * f.sin_a) / (2 * SELF_TERM_U_STEP * distance);
     return f;
 }
 
-void ilsai_edge_table(edge_table *t, double dx, double dy) {
+void ilsai_self_term_table(self_term_table *t, double dx, double dy) {
     double size = fmax(dx, dy);
     t->dx = dx;
     t->dy = dy;
-    for (int e = 0; e < EDGE_EXPONENTS; e++) {
-        for (int a = 0; a < EDGE_ANGLES; a++) {
-            int mirrored = dx == dy && 2 * a > EDGE_ANGLES - 1;
+    for (int e = 0; e < SELF_TERM_EXPONENTS; e++) {
+        for (int a = 0; a < SELF_TERM_ANGLES; a++) {
+            int mirrored = dx == dy && 2 * a > SELF_TERM_ANGLES - 1;
             t->at[e][a][0] = 0;
-            for (int d = 1; d < EDGE_DISTANCES; d++) {
-                edge_front f = front_at(dx / size, dy / size, e, a, d);
-                t->at[e][a][d] = mirrored ? t->at[e][EDGE_ANGLES - 1 - a][d]
-                                          : ilsai_edge_exact(dx / size, dy / size, &f);
+            for (int d = 1; d < SELF_TERM_DISTANCES; d++) {
+                self_term_front f = front_at(dx / size, dy / size, e, a, d);
+                t->at[e][a][d] = mirrored ? t->at[e][SELF_TERM_ANGLES - 1 - a][d]
+                                          : ilsai_self_term_exact(dx / size, dy / size, &f);
             }
         }
     }
@@ -180,22 +181,22 @@ static cubic cubic_at(double x, int count) {
 }
 
 /* Lagrange's weights of the three exponents. */
-static void exponent_weights(double exponent, double w[EDGE_EXPONENTS]) {
+static void exponent_weights(double exponent, double w[SELF_TERM_EXPONENTS]) {
     double x = 12 * (fmin(fmax(exponent, 0.5), 2.0 / 3.0) - 0.5);
     w[0] = 0.5 * (x - 1) * (x - 2);
     w[1] = x * (2 - x);
     w[2] = 0.5 * x * (x - 1);
 }
 
-edge_term ilsai_edge_lookup(const edge_table *table, const edge_front *f) {
+self_term ilsai_self_term_lookup(const self_term_table *table, const self_term_front *f) {
     double full = table->dx * f->cos_a + table->dy * f->sin_a, u = full / (2 * f->s);
-    double most = EDGE_U_STEP * (EDGE_DISTANCES - 1), by_u = u < most ? -u / f->s : 0;
-    cubic distance = cubic_at(fmin(u, most) / EDGE_U_STEP, EDGE_DISTANCES);
-    cubic angle = cubic_at(table->dy * f->sin_a / full * (EDGE_ANGLES - 1), EDGE_ANGLES);
-    double by_exponent[EDGE_EXPONENTS];
-    edge_term out = {0, 0};
+    double most = SELF_TERM_U_STEP * (SELF_TERM_DISTANCES - 1), by_u = u < most ? -u / f->s : 0;
+    cubic distance = cubic_at(fmin(u, most) / SELF_TERM_U_STEP, SELF_TERM_DISTANCES);
+    cubic angle = cubic_at(table->dy * f->sin_a / full * (SELF_TERM_ANGLES - 1), SELF_TERM_ANGLES);
+    double by_exponent[SELF_TERM_EXPONENTS];
+    self_term out = {0, 0};
     exponent_weights(f->exponent, by_exponent);
-    for (int e = 0; e < EDGE_EXPONENTS; e++) {
+    for (int e = 0; e < SELF_TERM_EXPONENTS; e++) {
         for (int a = 0; a < 4; a++) {
             const double *at = table->at[e][angle.node[a]];
             double w = by_exponent[e] * angle.weight[a];
@@ -205,6 +206,6 @@ edge_term ilsai_edge_lookup(const edge_table *table, const edge_front *f) {
             }
         }
     }
-    out.slope *= by_u / EDGE_U_STEP;
+    out.slope *= by_u / SELF_TERM_U_STEP;
     return out;
 }

@@ -15,31 +15,31 @@
 #define ILSAI_SELF_TERM_H
 
 /* A straight front as a cell sees it. */
-typedef struct edge_front {
+typedef struct self_term_front {
     double s;            /* distance from the cell's centre, > 0 */
     double cos_a, sin_a; /* normal, reflected into 0 .. pi/2 */
     double exponent;     /* lambda, 1/2 .. 2/3 */
-} edge_front;
+} self_term_front;
 
 /* What the self term lacks, as a part of it, and its derivative by s. */
-typedef struct edge_term {
+typedef struct self_term {
     double value, slope;
-} edge_term;
+} self_term;
 
 /* Mean of s^lambda over the cell as a part of its value at the centre. */
-double ilsai_edge_mean(double dx, double dy, const edge_front *front);
+double ilsai_self_term_mean(double dx, double dy, const self_term_front *front);
 
 /* The term by summing over the lattice: tens of microseconds. */
-double ilsai_edge_exact(double dx, double dy, const edge_front *front);
+double ilsai_self_term_exact(double dx, double dy, const self_term_front *front);
 
 /* The term for one shape of cells, interpolated to 1e-3 of the self term. */
-enum { EDGE_DISTANCES = 27, EDGE_ANGLES = 13, EDGE_EXPONENTS = 3 };
-typedef struct edge_table {
+enum { SELF_TERM_DISTANCES = 27, SELF_TERM_ANGLES = 13, SELF_TERM_EXPONENTS = 3 };
+typedef struct self_term_table {
     double dx, dy; /* 0: not made yet */
-    double at[EDGE_EXPONENTS][EDGE_ANGLES][EDGE_DISTANCES];
-} edge_table;
+    double at[SELF_TERM_EXPONENTS][SELF_TERM_ANGLES][SELF_TERM_DISTANCES];
+} self_term_table;
 
-void ilsai_edge_table(edge_table *table, double dx, double dy);
-edge_term ilsai_edge_lookup(const edge_table *table, const edge_front *front);
+void ilsai_self_term_table(self_term_table *table, double dx, double dy);
+self_term ilsai_self_term_lookup(const self_term_table *table, const self_term_front *front);
 
 #endif

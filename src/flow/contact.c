@@ -9,18 +9,18 @@ static double kept_width(const contact *c, int cell) {
 }
 
 /* The most that need not leak: all but what the cell loses by closing. */
-static double relief_limit(const contact *c, int k) {
+static double retained_limit(const contact *c, int k) {
     int cell = c->cells->cell[k];
     if (!c->field.leak) {
         return 0;
     }
-    double full = fmax(c->field.leak[cell] - c->shift[k], 0);
+    double full = fmax(c->field.leak[cell] - c->source_change[k], 0);
     return full - fmin(full, fmax(c->old[cell] - kept_width(c, cell), 0));
 }
 
-static void set_relief(const contact *c, int k, double value) {
-    if (c->field.relief) {
-        c->field.relief[c->cells->cell[k]] = value;
+static void set_retained(const contact *c, int k, double value) {
+    if (c->field.retained) {
+        c->field.retained[c->cells->cell[k]] = value;
     }
 }
 
@@ -30,18 +30,18 @@ static void set_state(const contact *c, int k, unsigned char state) {
     int cell = c->cells->cell[k];
     c->field.state[cell] = state;
     c->cells->unknown[k] = unknown[state];
-    c->caught[k] = c->pressure[cell];
+    c->closing_pressure[k] = c->pressure[cell];
 }
 
 void ilsai_contact_begin(const contact *c) {
     for (int k = 0; k < c->cells->count; k++) {
         int cell = c->cells->cell[k], tip = c->cells->unknown[k] == UNKNOWN_PRESSURE;
         unsigned char state = tip ? CONTACT_OPEN : c->field.state[cell];
-        double limit = state == CONTACT_OPEN ? 0 : relief_limit(c, k);
+        double limit = state == CONTACT_OPEN ? 0 : retained_limit(c, k);
         if (state == CONTACT_DRAINING) {
-            limit = fmax(fmin(c->field.relief[cell], limit), 0);
+            limit = fmax(fmin(c->field.retained[cell], limit), 0);
         }
-        set_relief(c, k, limit);
+        set_retained(c, k, limit);
         if (!tip) {
             set_state(c, k, state);
         }
@@ -53,10 +53,10 @@ void ilsai_contact_begin(const contact *c) {
 
 /* What the width would lack goes on as what does not leak. */
 static void close_cell(const contact *c, int k, double missing) {
-    double limit = relief_limit(c, k);
-    int drains = missing < limit || (c->late && c->field.relief);
+    double limit = retained_limit(c, k);
+    int drains = missing < limit || (c->late && c->field.retained);
     c->width[c->cells->cell[k]] += missing;
-    set_relief(c, k, drains ? missing : limit);
+    set_retained(c, k, drains ? missing : limit);
     set_state(c, k, drains ? CONTACT_DRAINING : CONTACT_CLOSED);
 }
 
@@ -70,22 +70,22 @@ int ilsai_contact_bound(const contact *c, int k) {
             return 1;
         }
     } else if (c->cells->unknown[k] == UNKNOWN_LEAK && !c->late) {
-        double limit = relief_limit(c, k), relief = c->field.relief[cell];
-        if (relief < 0 || relief > limit) {
-            set_relief(c, k, relief < 0 ? 0 : limit);
-            set_state(c, k, relief < 0 ? CONTACT_OPEN : CONTACT_CLOSED);
+        double limit = retained_limit(c, k), retained = c->field.retained[cell];
+        if (retained < 0 || retained > limit) {
+            set_retained(c, k, retained < 0 ? 0 : limit);
+            set_state(c, k, retained < 0 ? CONTACT_OPEN : CONTACT_CLOSED);
             return 1;
         }
     }
     return 0;
 }
 
-int ilsai_contact_lifts(const contact *c, int k) {
-    return c->pressure[c->cells->cell[k]] > c->stress[k] && !(c->late && !c->field.relief);
+int ilsai_contact_opens(const contact *c, int k) {
+    return c->pressure[c->cells->cell[k]] > c->stress[k] && !(c->late && !c->field.retained);
 }
 
 void ilsai_contact_reopen(const contact *c, int k) {
-    int drains = relief_limit(c, k) > 0 || (c->late && c->field.relief);
+    int drains = retained_limit(c, k) > 0 || (c->late && c->field.retained);
     c->pressure[c->cells->cell[k]] = c->stress[k];
     set_state(c, k, drains ? CONTACT_DRAINING : CONTACT_OPENING);
 }
@@ -94,6 +94,6 @@ double ilsai_contact_violation(const contact *c, int k) {
     if (c->cells->unknown[k] != UNKNOWN_LEAK) {
         return 0;
     }
-    double relief = c->field.relief[c->cells->cell[k]];
-    return fmax(-relief, relief - relief_limit(c, k));
+    double retained = c->field.retained[c->cells->cell[k]];
+    return fmax(-retained, retained - retained_limit(c, k));
 }

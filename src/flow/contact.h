@@ -24,17 +24,17 @@ typedef struct contact_fields {
     double closure_width; /* w_c */
     unsigned char *state; /* NULL: cells cannot close */
     const double *leak;   /* per area in the step at the full rate; NULL: nothing leaks */
-    double *relief;       /* the part of leak that does not; NULL as leak */
+    double *retained;     /* the part of leak that does not; NULL as leak */
 } contact_fields;
 
 /* What a solve knows of it. Arrays are over the mesh but for shift. */
 typedef struct contact {
     contact_fields field;
-    active *cells;        /* their unknowns follow the states */
-    const double *old;    /* widths at the start of the step; a cell under w_c keeps that */
-    const double *shift;  /* per active cell: change of the source terms in this solve */
-    const double *stress; /* per active cell: sigma + C w */
-    double *caught;       /* per active cell: pressure with which it closed or began */
+    unknowns *cells;             /* their unknowns follow the states */
+    const double *old;           /* widths at the start of the step; a cell under w_c keeps that */
+    const double *source_change; /* per numbered cell: change of the source terms in this solve */
+    const double *stress;        /* per numbered cell: sigma + C w */
+    double *closing_pressure;    /* per numbered cell: pressure with which it closed or began */
     double *width, *pressure;
     /*
      * Cells that open and close in turn would go on for ever: late in a solve they drain, beyond
@@ -58,7 +58,7 @@ void ilsai_contact_begin(const contact *c);
 int ilsai_contact_bound(const contact *c, int k);
 
 /* Whether the pressure of closed cell k exceeds the closure stress, and the cell may open. */
-int ilsai_contact_lifts(const contact *c, int k);
+int ilsai_contact_opens(const contact *c, int k);
 
 /* Opens such a cell. */
 void ilsai_contact_reopen(const contact *c, int k);

@@ -3,7 +3,7 @@
 #include "base/tuning.h"
 #include <stdlib.h>
 
-ilsa_status ilsai_flow_reserve(flow *f, int count) {
+ilsa_status ilsai_lubrication_reserve(lubrication *f, int count) {
     if (count <= f->capacity) {
         return ILSA_OK;
     }
@@ -19,15 +19,15 @@ ilsa_status ilsai_flow_reserve(flow *f, int count) {
     return ILSA_OK;
 }
 
-void ilsai_flow_destroy(flow *f) {
+void ilsai_lubrication_destroy(lubrication *f) {
     free(f->conductance);
     free(f->slope);
 }
 
-/* What the loops over the active cells need. */
+/* What the loops over the numbered cells need. */
 typedef struct setting {
-    flow *f;
-    const active *a;
+    lubrication *f;
+    const unknowns *a;
     const double *width, *width_old, *pressure;
     double scale[GRID_FACES];
 } setting;
@@ -50,10 +50,11 @@ static void set_faces(void *context, int first, int end) {
     }
 }
 
-void ilsai_flow_set(flow *f, const active *a, const grid *g, const double *width,
-                    const double *width_old, const double *pressure, double dt_over_mu_prime) {
+void ilsai_lubrication_set(lubrication *f, const unknowns *a, const grid *g, const double *width,
+                           const double *width_old, const double *pressure,
+                           double dt_over_mu_prime) {
     double along_x = dt_over_mu_prime / (g->dx * g->dx);
     double along_y = dt_over_mu_prime / (g->dy * g->dy);
     setting s = {f, a, width, width_old, pressure, {along_x, along_x, along_y, along_y}};
-    ilsai_team_run(f->threads, set_faces, &s, a->count, ILSAI_SHARE_CELLS);
+    ilsai_thread_pool_run(f->threads, set_faces, &s, a->count, ILSAI_SHARE_CELLS);
 }

@@ -1,20 +1,20 @@
-/* The lubrication operator (4.3) on the active cells, and its derivative. */
+/* The lubrication operator (4.3) on the numbered cells, and its derivative. */
 #ifndef ILSAI_LUBRICATION_H
 #define ILSAI_LUBRICATION_H
 
-#include "base/unknowns.h"
 #include "base/thread_pool.h"
+#include "base/unknowns.h"
 
-/* Per active cell and face; 0 where there is no active cell across, so that no fluid passes. */
-typedef struct flow {
+/* Per numbered cell and face; 0 where there is no numbered cell across, so that no fluid passes. */
+typedef struct lubrication {
     double *conductance; /* dt w^3 / (mu' h^2): width gained per pressure difference */
     double *slope;       /* derivative of that face's gain by the width of either cell */
     int capacity;
-    team *threads; /* that share the loops, or NULL */
-} flow;
+    thread_pool *threads; /* that share the loops, or NULL */
+} lubrication;
 
-ilsa_status ilsai_flow_reserve(flow *f, int count);
-void ilsai_flow_destroy(flow *f);
+ilsa_status ilsai_lubrication_reserve(lubrication *f, int count);
+void ilsai_lubrication_destroy(lubrication *f);
 
 /*
  * Sets both from widths, those at the start of the step, and pressures over the mesh. Of the three
@@ -23,12 +23,13 @@ void ilsai_flow_destroy(flow *f);
  * at the end is mu' V / w^2: with w^3 the flux would be too large beside the front by the same part
  * on any mesh.
  */
-void ilsai_flow_set(flow *f, const active *a, const grid *g, const double *width,
-                    const double *width_old, const double *pressure, double dt_over_mu_prime);
+void ilsai_lubrication_set(lubrication *f, const unknowns *a, const grid *g, const double *width,
+                           const double *width_old, const double *pressure,
+                           double dt_over_mu_prime);
 
-/* dt [A(w) p] of active cell k, for the conductances as they are set. */
-static inline double ilsai_flow_gain_of(const flow *f, const active *a, const double *pressure,
-                                        int k) {
+/* dt [A(w) p] of numbered cell k, for the conductances as they are set. */
+static inline double ilsai_lubrication_inflow(const lubrication *f, const unknowns *a,
+                                              const double *pressure, int k) {
     double sum = 0, p = pressure[a->cell[k]];
     for (int face = 0; face < GRID_FACES; face++) {
         int at = GRID_FACES * k + face, other = a->neighbour[at];

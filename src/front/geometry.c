@@ -80,7 +80,7 @@ static void add_point(parabola *p, double xi, double eta) {
 /* -2 c2 over (1 + c1^2)^(3/2), by Cramer's rule; 0 for points that do not settle it. */
 static double fitted_curvature(const parabola *p, double span) {
     const double *m = p->m, *r = p->r;
-    if (p->m[0] < ILSAI_SHAPE_POINTS || p->least > -span || p->largest < span) {
+    if (p->m[0] < ILSAI_GEOMETRY_POINTS || p->least > -span || p->largest < span) {
         return 0;
     }
     double det = m[0] * (m[2] * m[4] - m[3] * m[3]) - m[1] * (m[1] * m[4] - m[2] * m[3]) +
@@ -98,7 +98,7 @@ static double fitted_curvature(const parabola *p, double span) {
 
 /* Curvature of the front through the tip cells around the point it has in front of (i, j). */
 static double curvature_at(const ilsa_solver *s, int i, int j, vector n, double distance) {
-    double size = fmax(s->mesh.dx, s->mesh.dy), reach = ILSAI_SHAPE_REACH * size;
+    double size = fmax(s->mesh.dx, s->mesh.dy), reach = ILSAI_GEOMETRY_REACH * size;
     double x0 = ilsai_mesh_x(&s->mesh, i) + distance * n.x;
     double y0 = ilsai_mesh_y(&s->mesh, j) + distance * n.y;
     int wx = (int)ceil(reach / s->mesh.dx) + 1, wy = (int)ceil(reach / s->mesh.dy) + 1;
@@ -113,31 +113,31 @@ static double curvature_at(const ilsa_solver *s, int i, int j, vector n, double 
             double x = ilsai_mesh_x(&s->mesh, a) - level * m.x - x0;
             double y = ilsai_mesh_y(&s->mesh, b) - level * m.y - y0;
             double xi = -x * n.y + y * n.x;
-            if (m.x * n.x + m.y * n.y > ILSAI_SHAPE_ALIKE && fabs(xi) <= reach) {
+            if (m.x * n.x + m.y * n.y > ILSAI_GEOMETRY_ALIKE && fabs(xi) <= reach) {
                 add_point(&p, xi, x * n.x + y * n.y);
             }
         }
     }
-    double curvature = fitted_curvature(&p, ILSAI_SHAPE_SPAN * reach),
-           limit = ILSAI_SHAPE_CURVATURE / size;
+    double curvature = fitted_curvature(&p, ILSAI_GEOMETRY_SPAN * reach),
+           limit = ILSAI_GEOMETRY_CURVATURE / size;
     return fmax(-limit, fmin(limit, curvature));
 }
 
-/* Whether a cell can tell the width further in; then its depth behind the seed is set. */
-static int try_inner(const ilsa_solver *s, front_seed *seed, int i, int j, vector n, int di, int dj,
-                     unsigned char least) {
+/* Whether a cell can tell the width further in; then its depth behind the survey is set. */
+static int try_inner(const ilsa_solver *s, survey_cell *survey, int i, int j, vector n, int di,
+                     int dj, unsigned char least) {
     if (!on_mesh(s, i + di, j + dj)) {
         return 0;
     }
     int cell = (j + dj) * s->mesh.nx + i + di;
     double along = -(di * s->mesh.dx * n.x + dj * s->mesh.dy * n.y);
     double across = -di * s->mesh.dx * n.y + dj * s->mesh.dy * n.x;
-    double depth = along - 0.5 * seed->curvature * across * across;
+    double depth = along - 0.5 * survey->curvature * across * across;
     if (s->field.kind[cell] < least || !(depth > 0)) {
         return 0;
     }
-    seed->inner = ilsai_grid_fold(&s->g, i + di, j + dj);
-    seed->depth = depth;
+    survey->inner = ilsai_grid_fold(&s->g, i + di, j + dj);
+    survey->depth = depth;
     return 1;
 }
 
@@ -145,12 +145,13 @@ static int try_inner(const ilsa_solver *s, front_seed *seed, int i, int j, vecto
  * The cell behind (i, j) along the normal, under the same stress: two cells in if the channel is
  * that deep, else the next one. The width follows the tip's only where the stress does not jump.
  */
-static void find_inner(const ilsa_solver *s, front_seed *seed, int i, int j, vector n) {
+static void find_inner(const ilsa_solver *s, survey_cell *survey, int i, int j, vector n) {
     double cell = s->mesh.dx * fabs(n.x) + s->mesh.dy * fabs(n.y);
     double di = -n.x * cell / s->mesh.dx, dj = -n.y * cell / s->mesh.dy;
-    seed->inner = -1;
-    if (!try_inner(s, seed, i, j, n, (int)lround(2 * di), (int)lround(2 * dj), ILSA_CELL_CHANNEL)) {
-        try_inner(s, seed, i, j, n, (int)lround(di), (int)lround(dj), ILSA_CELL_SURVEY);
+    survey->inner = -1;
+    if (!try_inner(s, survey, i, j, n, (int)lround(2 * di), (int)lround(2 * dj),
+                   ILSA_CELL_CHANNEL)) {
+        try_inner(s, survey, i, j, n, (int)lround(di), (int)lround(dj), ILSA_CELL_SURVEY);
     }
 }
 
@@ -160,10 +161,11 @@ static double edge_distance(double direction, double size, int k) {
 }
 
 /* Notes the jump between two cells on the ray; height is of the stress nearer to the front. */
-static void note_jump(const ilsa_solver *s, front_seed *seed, double depth, int ahead, int behind) {
+static void note_step(const ilsa_solver *s, survey_cell *survey, double depth, int ahead,
+                      int behind) {
     double height = (s->sigma[ahead] - s->sigma[behind]) / s->material.E_prime;
-    if (height != 0 && seed->jumps < FRONT_JUMPS) {
-        seed->jump[seed->jumps++] = (stress_jump){depth, height};
+    if (height != 0 && survey->step_count < SURVEY_STEPS) {
+        survey->step[survey->step_count++] = (stress_step){depth, height};
     }
 }
 
@@ -171,7 +173,7 @@ static void note_jump(const ilsa_solver *s, front_seed *seed, double depth, int 
  * The jumps of the stress from the centre of (i, j) along n for a length; sign 1: towards the
  * front, -1: away from it.
  */
-static void find_jumps(const ilsa_solver *s, front_seed *seed, int i, int j, vector n, int sign,
+static void find_steps(const ilsa_solver *s, survey_cell *survey, int i, int j, vector n, int sign,
                        double length) {
     int a = i, b = j, step_x = n.x * sign > 0 ? 1 : -1, step_y = n.y * sign > 0 ? 1 : -1;
     for (int kx = 0, ky = 0;;) {
@@ -186,32 +188,32 @@ static void find_jumps(const ilsa_solver *s, front_seed *seed, int i, int j, vec
             return;
         }
         int to = b * s->mesh.nx + a;
-        note_jump(s, seed, -sign * next, sign > 0 ? to : from, sign > 0 ? from : to);
+        note_step(s, survey, -sign * next, sign > 0 ? to : from, sign > 0 ? from : to);
     }
 }
 
 /* The nearest behind the cell count first; in front, those that the step may reach. */
-static void set_jumps(const ilsa_solver *s, front_seed *seed, int i, int j, vector n) {
-    seed->jumps = 0;
+static void set_steps(const ilsa_solver *s, survey_cell *survey, int i, int j, vector n) {
+    survey->step_count = 0;
     if (n.x != 0 || n.y != 0) {
         double cell = s->mesh.dx * fabs(n.x) + s->mesh.dy * fabs(n.y);
-        find_jumps(s, seed, i, j, n, 1, seed->s0 + ILSAI_ADVANCE_MAX * seed->h);
-        find_jumps(s, seed, i, j, n, -1, ILSAI_JUMP_REACH * cell);
+        find_steps(s, survey, i, j, n, 1, survey->s0 + ILSAI_ADVANCE_MAX * survey->h);
+        find_steps(s, survey, i, j, n, -1, ILSAI_STRESS_STEP_REACH * cell);
     }
 }
 
-void ilsai_shape_set(const ilsa_solver *s, front_seed *seeds, int count) {
+void ilsai_geometry_set(const ilsa_solver *s, survey_cell *survey_cells, int count) {
     int varies = ilsai_stress_varies(s->stress);
     for (int k = 0; k < count; k++) {
-        front_seed *seed = &seeds[k];
-        int i = seed->cell % s->mesh.nx, j = seed->cell / s->mesh.nx;
+        survey_cell *survey = &survey_cells[k];
+        int i = survey->cell % s->mesh.nx, j = survey->cell / s->mesh.nx;
         vector n = normal_seen(s, i, j);
-        seed->cos_a = fabs(n.x);
-        seed->sin_a = fabs(n.y);
-        seed->curvature = curvature_at(s, i, j, n, seed->s0);
-        find_inner(s, seed, i, j, n);
+        survey->cos_a = fabs(n.x);
+        survey->sin_a = fabs(n.y);
+        survey->curvature = curvature_at(s, i, j, n, survey->s0);
+        find_inner(s, survey, i, j, n);
         if (varies) {
-            set_jumps(s, seed, i, j, n);
+            set_steps(s, survey, i, j, n);
         }
     }
 }

@@ -7,7 +7,7 @@
 
 #include "step/state.h"
 
-/* Sets normal, curvature, inner cell, depth and stress jumps of every seed. */
-void ilsai_shape_set(const ilsa_solver *s, front_seed *seeds, int count);
+/* Sets normal, curvature, inner cell, depth and stress jumps of every survey. */
+void ilsai_geometry_set(const ilsa_solver *s, survey_cell *survey_cells, int count);
 
 #endif

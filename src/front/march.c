@@ -18,8 +18,8 @@ typedef struct node {
     int place; /* in the heap, -1 when accepted */
 } node;
 
-struct front {
-    node *nodes; /* seeds first, then every cell touched */
+struct march {
+    node *nodes; /* survey_cells first, then every cell touched */
     int *heap;   /* node numbers, smallest T first */
     front_cell *cells;
     int *node_of; /* per cell of the region: node number or -1 */
@@ -29,11 +29,11 @@ struct front {
     box region;
 };
 
-front *ilsai_front_create(void) {
-    return calloc(1, sizeof(front));
+march *ilsai_march_create(void) {
+    return calloc(1, sizeof(march));
 }
 
-void ilsai_front_destroy(front **f) {
+void ilsai_march_destroy(march **f) {
     if (*f) {
         free((*f)->nodes);
         free((*f)->heap);
@@ -44,12 +44,12 @@ void ilsai_front_destroy(front **f) {
     }
 }
 
-const front_cell *ilsai_front_cells(const front *f, int *count) {
+const front_cell *ilsai_march_cells(const march *f, int *count) {
     *count = f->cell_count;
     return f->cells;
 }
 
-static ilsa_status reserve_nodes(front *f, int count) {
+static ilsa_status reserve_nodes(march *f, int count) {
     if (count <= f->node_capacity) {
         return ILSA_OK;
     }
@@ -67,7 +67,7 @@ static ilsa_status reserve_nodes(front *f, int count) {
     return ILSA_OK;
 }
 
-static ilsa_status set_region(front *f, const box *region) {
+static ilsa_status set_region(march *f, const box *region) {
     size_t size = ilsai_box_columns(region) * ilsai_box_rows(region);
     if (size > f->region_capacity) {
         size_t capacity = size + size / 2;
@@ -86,7 +86,7 @@ static ilsa_status set_region(front *f, const box *region) {
     return ILSA_OK;
 }
 
-static int *node_slot(const front *f, const grid *g, int cell) {
+static int *node_slot(const march *f, const grid *g, int cell) {
     int i = cell % g->nx, j = cell / g->nx;
     const box *r = &f->region;
     if (i < r->x0 || i > r->x1 || j < r->y0 || j > r->y1) {
@@ -95,18 +95,18 @@ static int *node_slot(const front *f, const grid *g, int cell) {
     return &f->node_of[(j - r->y0) * (r->x1 - r->x0 + 1) + (i - r->x0)];
 }
 
-static void place(front *f, int at, int number) {
+static void place(march *f, int at, int number) {
     f->heap[at] = number;
     f->nodes[number].place = at;
 }
 
 /* Order of the march; equal distances go by cell so that the order never depends on the heap. */
-static int before(const front *f, int a, int b) {
+static int before(const march *f, int a, int b) {
     const node *p = &f->nodes[a], *q = &f->nodes[b];
     return p->T < q->T || (p->T == q->T && p->cell < q->cell);
 }
 
-static void sift_up(front *f, int at) {
+static void sift_up(march *f, int at) {
     int number = f->heap[at];
     while (at > 0 && before(f, number, f->heap[(at - 1) / 2])) {
         place(f, at, f->heap[(at - 1) / 2]);
@@ -115,7 +115,7 @@ static void sift_up(front *f, int at) {
     place(f, at, number);
 }
 
-static void sift_down(front *f, int at) {
+static void sift_down(march *f, int at) {
     int number = f->heap[at];
     for (;;) {
         int child = 2 * at + 1;
@@ -134,7 +134,7 @@ static void sift_down(front *f, int at) {
     place(f, at, number);
 }
 
-static int pop(front *f) {
+static int pop(march *f) {
     int number = f->heap[0];
     f->nodes[number].place = -1;
     f->heap_count--;
@@ -146,14 +146,14 @@ static int pop(front *f) {
 }
 
 /* The accepted neighbour with the smaller T on one axis; NULL if neither is accepted. */
-static const node *upwind(const front *f, const grid *g, int i, int j, int face_a, int face_b) {
+static const node *upwind(const march *f, const grid *g, int i, int j, int face_a, int face_b) {
     const node *best = NULL;
     const int faces[2] = {face_a, face_b};
     for (int k = 0; k < 2; k++) {
         int cell = ilsai_grid_neighbour(g, i, j, faces[k]);
-        const int *slot = cell >= 0 ? node_slot(f, g, cell) : NULL;
-        if (slot && *slot >= 0 && f->nodes[*slot].place < 0) {
-            const node *candidate = &f->nodes[*slot];
+        const int *number = cell >= 0 ? node_slot(f, g, cell) : NULL;
+        if (number && *number >= 0 && f->nodes[*number].place < 0) {
+            const node *candidate = &f->nodes[*number];
             best = !best || candidate->T < best->T ? candidate : best;
         }
     }
@@ -210,7 +210,7 @@ static void bend(node *n, const node *a, const node *b, double dx, double dy) {
  * Leaves out the least of count weights, and those that are as small but for rounding: a front that
  * mirrors itself has such, and keeps its mirror. Returns how many are left.
  */
-static int drop_least(int count, int *seed, double *weight) {
+static int drop_least(int count, int *survey, double *weight) {
     double least = INFINITY;
     int kept = 0;
     for (int k = 0; k < count; k++) {
@@ -218,7 +218,7 @@ static int drop_least(int count, int *seed, double *weight) {
     }
     for (int k = 0; k < count; k++) {
         if (weight[k] > (1 + FRONT_ALIKE) * least) {
-            seed[kept] = seed[k];
+            survey[kept] = survey[k];
             weight[kept++] = weight[k];
         }
     }
@@ -228,30 +228,30 @@ static int drop_least(int count, int *seed, double *weight) {
 /* Joins the parents of b to those of a, with weights; the least are dropped when there are more. */
 static front_parents join(const front_parents *a, double weight_a, const front_parents *b,
                           double weight_b) {
-    int count = 0, seed[2 * FRONT_PARENTS];
+    int count = 0, survey[2 * FRONT_PARENTS];
     double weight[2 * FRONT_PARENTS], sum = 0;
     for (int k = 0; k < a->count; k++, count++) {
-        seed[count] = a->seed[k];
+        survey[count] = a->survey[k];
         weight[count] = weight_a * a->weight[k];
     }
     for (int k = 0; k < b->count; k++) {
         int at = 0;
-        while (at < count && seed[at] != b->seed[k]) {
+        while (at < count && survey[at] != b->survey[k]) {
             at++;
         }
-        seed[at] = b->seed[k];
+        survey[at] = b->survey[k];
         weight[at] = (at < count ? weight[at] : 0) + weight_b * b->weight[k];
         count += at == count;
     }
     while (count > FRONT_PARENTS) {
-        count = drop_least(count, seed, weight);
+        count = drop_least(count, survey, weight);
     }
     front_parents joined = {.count = count};
     for (int k = 0; k < count; k++) {
         sum += weight[k];
     }
     for (int k = 0; k < count; k++) {
-        joined.seed[k] = seed[k];
+        joined.survey[k] = survey[k];
         joined.weight[k] = weight[k] / sum;
     }
     return joined;
@@ -277,7 +277,7 @@ static int two_sided(node *n, const node *a, const node *b, double dx, double dy
     return 1;
 }
 
-static void update(const front *f, const grid *g, node *n) {
+static void update(const march *f, const grid *g, node *n) {
     int i = n->cell % g->nx, j = n->cell / g->nx;
     const node *a = upwind(f, g, i, j, GRID_LEFT, GRID_RIGHT);
     const node *b = upwind(f, g, i, j, GRID_DOWN, GRID_UP);
@@ -291,41 +291,42 @@ static void update(const front *f, const grid *g, node *n) {
     }
 }
 
-static ilsa_status add_seed(front *f, const grid *g, const front_seed *seeds, int k) {
-    const front_seed *seed = &seeds[k];
-    int *slot = node_slot(f, g, seed->cell);
-    if (!slot) {
+static ilsa_status add_seed(march *f, const grid *g, const survey_cell *survey_cells, int k) {
+    const survey_cell *survey = &survey_cells[k];
+    int *number = node_slot(f, g, survey->cell);
+    if (!number) {
         return ILSA_OK;
     }
     if (reserve_nodes(f, f->node_count + 1) != ILSA_OK) {
         return ILSA_ERR_MEMORY;
     }
-    node n = {.T = -seed->s, .V = seed->V, .K_den = seed->s, .cell = seed->cell, .place = -1};
-    n.K_num = seed->w * sqrt(fabs(seed->s));
-    n.curvature = seed->curvature;
-    n.from = (front_parents){.count = 1, .seed = {k}, .weight = {1}};
-    *slot = f->node_count;
+    node n = {
+        .T = -survey->s, .V = survey->V, .K_den = survey->s, .cell = survey->cell, .place = -1};
+    n.K_num = survey->w * sqrt(fabs(survey->s));
+    n.curvature = survey->curvature;
+    n.from = (front_parents){.count = 1, .survey = {k}, .weight = {1}};
+    *number = f->node_count;
     f->nodes[f->node_count++] = n;
     return ILSA_OK;
 }
 
 /* Takes cell (i, j)'s neighbour across a face into the heap, or improves it there. */
-static ilsa_status touch(front *f, const grid *g, const unsigned char *kind, int i, int j,
+static ilsa_status touch(march *f, const grid *g, const unsigned char *kind, int i, int j,
                          int face) {
     int cell = ilsai_grid_neighbour(g, i, j, face);
-    int *slot = cell >= 0 ? node_slot(f, g, cell) : NULL;
-    if (!slot || kind[cell] >= ILSA_CELL_SURVEY) {
+    int *number = cell >= 0 ? node_slot(f, g, cell) : NULL;
+    if (!number || kind[cell] >= ILSA_CELL_SURVEY) {
         return ILSA_OK;
     }
-    if (*slot < 0) {
+    if (*number < 0) {
         if (reserve_nodes(f, f->node_count + 1) != ILSA_OK) {
             return ILSA_ERR_MEMORY;
         }
-        *slot = f->node_count++;
-        f->nodes[*slot] = (node){.T = INFINITY, .cell = cell, .place = f->heap_count};
-        f->heap[f->heap_count++] = *slot;
+        *number = f->node_count++;
+        f->nodes[*number] = (node){.T = INFINITY, .cell = cell, .place = f->heap_count};
+        f->heap[f->heap_count++] = *number;
     }
-    node *n = &f->nodes[*slot];
+    node *n = &f->nodes[*number];
     if (n->place >= 0) {
         update(f, g, n);
         sift_up(f, n->place);
@@ -334,7 +335,7 @@ static ilsa_status touch(front *f, const grid *g, const unsigned char *kind, int
     return ILSA_OK;
 }
 
-static ilsa_status touch_all(front *f, const grid *g, const unsigned char *kind, int cell) {
+static ilsa_status touch_all(march *f, const grid *g, const unsigned char *kind, int cell) {
     for (int face = 0; face < GRID_FACES; face++) {
         ilsa_status status = touch(f, g, kind, cell % g->nx, cell / g->nx, face);
         if (status != ILSA_OK) {
@@ -344,9 +345,9 @@ static ilsa_status touch_all(front *f, const grid *g, const unsigned char *kind,
     return ILSA_OK;
 }
 
-static void accept(front *f, const grid *g, const node *n, double *level) {
+static void accept(march *f, const grid *g, const node *n, double *level) {
     front_cell c = {.cell = n->cell, .T = n->T, .cos_a = n->cos_a, .sin_a = n->sin_a};
-    c.ell = 0.5 * ilsai_front_full(g, n->cos_a, n->sin_a) - n->T;
+    c.ell = 0.5 * ilsai_march_full(g, n->cos_a, n->sin_a) - n->T;
     c.V = n->V;
     c.from = n->from;
     c.K_num = n->K_num;
@@ -367,18 +368,18 @@ static void clear_level(const grid *g, const box *region, const unsigned char *k
     }
 }
 
-ilsa_status ilsai_front_march(front *f, const grid *g, const box *region, const unsigned char *kind,
-                              const front_seed *seeds, int seed_count, double limit,
-                              double *level) {
+ilsa_status ilsai_march_run(march *f, const grid *g, const box *region, const unsigned char *kind,
+                            const survey_cell *survey_cells, int survey_count, double limit,
+                            double *level) {
     ilsa_status status = set_region(f, region);
     clear_level(g, region, kind, level);
-    for (int k = 0; k < seed_count && status == ILSA_OK; k++) {
-        status = add_seed(f, g, seeds, k);
-        level[seeds[k].cell] = -seeds[k].s;
+    for (int k = 0; k < survey_count && status == ILSA_OK; k++) {
+        status = add_seed(f, g, survey_cells, k);
+        level[survey_cells[k].cell] = -survey_cells[k].s;
     }
-    for (int k = 0; k < seed_count && status == ILSA_OK; k++) {
-        const int *slot = node_slot(f, g, seeds[k].cell);
-        status = slot ? touch_all(f, g, kind, seeds[k].cell) : ILSA_OK;
+    for (int k = 0; k < survey_count && status == ILSA_OK; k++) {
+        const int *number = node_slot(f, g, survey_cells[k].cell);
+        status = number ? touch_all(f, g, kind, survey_cells[k].cell) : ILSA_OK;
     }
     while (status == ILSA_OK && f->heap_count > 0) {
         node n = f->nodes[pop(f)];

@@ -14,34 +14,37 @@ double ilsai_survey_size(const ilsa_solver *s, const grid *g, int i, int j) {
     return along_x && along_y ? ilsai_grid_h(g) : along_x ? g->dx : g->dy;
 }
 
-edge_front ilsai_survey_front(const front_seed *seed) {
-    return (edge_front){seed->s, seed->cos_a, seed->sin_a, seed->exponent};
+self_term_front ilsai_survey_front(const survey_cell *survey) {
+    return (self_term_front){survey->s, survey->cos_a, survey->sin_a, survey->exponent};
 }
 
-jump_depth ilsai_survey_jump_depth(const front_seed *seed, int k) {
-    double depth = seed->s + seed->jump[k].depth, soft = ILSAI_JUMP_SOFT * seed->h;
+step_depth ilsai_survey_step_depth(const survey_cell *survey, int k) {
+    double depth = survey->s + survey->step[k].depth, soft = ILSAI_STRESS_STEP_SOFT * survey->h;
     double part = depth > 0 ? depth / (depth + soft) : 0;
-    return (jump_depth){depth * part, part * (2 - part)};
+    return (step_depth){depth * part, part * (2 - part)};
 }
 
-double ilsai_survey_jump_width(const front_seed *seed, double s) {
+double ilsai_survey_step_width(const survey_cell *survey, double s) {
     double sum = 0;
-    for (int k = 0; k < seed->jumps; k++) {
-        sum += seed->jump[k].height * ilsai_jump_width(s, ilsai_survey_jump_depth(seed, k).value);
+    for (int k = 0; k < survey->step_count; k++) {
+        sum += survey->step[k].height *
+               ilsai_stress_step_width(s, ilsai_survey_step_depth(survey, k).value);
     }
     return sum;
 }
 
-/* What of the mean width of a cell at distance s from the seed's front no jump has brought. */
-static double smooth_width(const ilsa_solver *s, const front_seed *seed, int cell,
+/* What of the mean width of a cell at distance s from the survey's front no jump has brought. */
+static double smooth_width(const ilsa_solver *s, const survey_cell *survey, int cell,
                            double distance) {
     double w = s->trial.width[cell];
-    return fmax(w - ilsai_survey_jump_width(seed, distance), ILSAI_JUMP_LEFT * w);
+    return fmax(w - ilsai_survey_step_width(survey, distance), ILSAI_STRESS_STEP_LEFT * w);
 }
 
-double ilsai_survey_smooth_slope(const ilsa_solver *s, const front_seed *seed) {
-    double w = s->trial.width[seed->cell];
-    return smooth_width(s, seed, seed->cell, seed->s) > ILSAI_JUMP_LEFT * w ? 1 : ILSAI_JUMP_LEFT;
+double ilsai_survey_smooth_slope(const ilsa_solver *s, const survey_cell *survey) {
+    double w = s->trial.width[survey->cell];
+    return smooth_width(s, survey, survey->cell, survey->s) > ILSAI_STRESS_STEP_LEFT * w
+               ? 1
+               : ILSAI_STRESS_STEP_LEFT;
 }
 
 /*
@@ -53,27 +56,28 @@ typedef struct first_term {
     double by_cell, by_inner;
 } first_term;
 
-static first_term split_width(const ilsa_solver *s, const front_seed *seed) {
-    edge_front seen = ilsai_survey_front(seed);
-    double mean = ilsai_edge_mean(s->mesh.dx, s->mesh.dy, &seen);
-    double w = smooth_width(s, seed, seed->cell, seed->s) / mean;
-    first_term out = {w, ilsai_survey_smooth_slope(s, seed) / mean, 0};
-    if (seed->inner < 0) {
+static first_term split_width(const ilsa_solver *s, const survey_cell *survey) {
+    self_term_front seen = ilsai_survey_front(survey);
+    double mean = ilsai_self_term_mean(s->mesh.dx, s->mesh.dy, &seen);
+    double w = smooth_width(s, survey, survey->cell, survey->s) / mean;
+    first_term out = {w, ilsai_survey_smooth_slope(s, survey) / mean, 0};
+    if (survey->inner < 0) {
         return out;
     }
-    double deep = seed->s + seed->depth, here = seed->asymptote, there = seed->deep;
+    double deep = survey->s + survey->depth, here = survey->w_asymptote,
+           there = survey->w_asymptote_inner;
     seen.s = deep;
-    there *= ilsai_edge_mean(s->mesh.dx, s->mesh.dy, &seen);
-    double inner = smooth_width(s, seed, seed->inner, deep);
+    there *= ilsai_self_term_mean(s->mesh.dx, s->mesh.dy, &seen);
+    double inner = smooth_width(s, survey, survey->inner, deep);
     if (!(w * there > 0 && inner > 0)) {
         return out; /* a width that Newton's iteration has brought down to nothing */
     }
     double q = inner * here / (w * there);
-    double below = deep - q * seed->s, limit = ILSAI_NEXT_TERM_MAX;
-    double term = below > 0 ? (q - 1) * seed->s / below : limit;
+    double below = deep - q * survey->s, limit = ILSAI_NEXT_TERM_MAX;
+    double term = below > 0 ? (q - 1) * survey->s / below : limit;
     double slope = 0; /* d term / d q */
     if (fabs(term) < limit) {
-        slope = seed->s * seed->depth / (below * below);
+        slope = survey->s * survey->depth / (below * below);
     } else {
         term = term > 0 ? limit : -limit;
     }
@@ -83,28 +87,29 @@ static first_term split_width(const ilsa_solver *s, const front_seed *seed) {
     return out;
 }
 
-void ilsai_survey_settle(const ilsa_solver *s, front_seed *seed) {
-    double at[] = {seed->s, seed->s + (seed->inner >= 0 ? seed->depth : 0)};
-    tip_point point[2] = {{sqrt(at[0]), 0, 0.5, 0},
-                          {sqrt(at[1]), 0, 0.5, 0}}; /* at rest, but a factor */
-    if (seed->V > 0) {
-        ilsai_tip_row(&s->asymptote, seed->V, seed->inner >= 0 ? 2 : 1, at, point);
+void ilsai_survey_settle(const ilsa_solver *s, survey_cell *survey) {
+    double at[] = {survey->s, survey->s + (survey->inner >= 0 ? survey->depth : 0)};
+    asymptote_point point[2] = {{sqrt(at[0]), 0, 0.5, 0},
+                                {sqrt(at[1]), 0, 0.5, 0}}; /* at rest, but a factor */
+    if (survey->V > 0) {
+        ilsai_asymptote_row(&s->tip_material, survey->V, survey->inner >= 0 ? 2 : 1, at, point);
     }
-    seed->asymptote = point[0].w;
-    seed->exponent = point[0].exponent;
-    seed->deep = point[1].w;
+    survey->w_asymptote = point[0].w;
+    survey->exponent = point[0].exponent;
+    survey->w_asymptote_inner = point[1].w;
 }
 
-double ilsai_survey_width(const ilsa_solver *s, const front_seed *seed) {
-    return split_width(s, seed).width;
+double ilsai_survey_width(const ilsa_solver *s, const survey_cell *survey) {
+    return split_width(s, survey).width;
 }
 
-/* One evaluation of (4.9), the second term taken at the distance and velocity that seed has. */
-static double distance_for(const ilsa_solver *s, front_seed *seed, double dt) {
-    first_term w = split_width(s, seed);
-    tip_front at = ilsai_tip_distance_near(&s->asymptote, w.width, seed->s0, dt, seed->s);
-    seed->ds_dw = at.ds_dw * w.by_cell;
-    seed->ds_inner = at.ds_dw * w.by_inner;
+/* One evaluation of (4.9), the second term taken at the distance and velocity that survey has. */
+static double distance_for(const ilsa_solver *s, survey_cell *survey, double dt) {
+    first_term w = split_width(s, survey);
+    asymptote_front at =
+        ilsai_asymptote_distance_near(&s->tip_material, w.width, survey->s0, dt, survey->s);
+    survey->ds_dw = at.ds_dw * w.by_cell;
+    survey->ds_inner = at.ds_dw * w.by_inner;
     return at.s;
 }
 
@@ -126,17 +131,17 @@ static double next_guess(bracket *b, double s, double value, double slope) {
  * A front that has just passed a step of the stress into a barrier leaves the less for the
  * asymptote the further it goes: F falls as steeply as the step is high, which takes more guesses.
  */
-double ilsai_survey_distance(const ilsa_solver *s, front_seed *seed, double dt) {
-    front_seed at = *seed;
+double ilsai_survey_distance(const ilsa_solver *s, survey_cell *survey, double dt) {
+    survey_cell at = *survey;
     double value = distance_for(s, &at, dt), limit = ILSAI_SURVEY_SLOPE;
     double close = ILSAI_SURVEY_CLOSE * s->tolerance * at.h;
-    double slope = seed->jumps > 0 ? 0 : seed->slope;
-    double least = seed->jumps > 0 ? -INFINITY : -limit;
+    double slope = survey->step_count > 0 ? 0 : survey->slope;
+    double least = survey->step_count > 0 ? -INFINITY : -limit;
     bracket root = {at.s0, INFINITY};
-    int most = seed->jumps > 0 ? ILSAI_SURVEY_GUESSES : ILSAI_SURVEY_SECANTS;
+    int most = survey->step_count > 0 ? ILSAI_SURVEY_GUESSES : ILSAI_SURVEY_SECANTS;
     for (int k = 0; k < most; k++) {
         double last = at.s, straight = fmax(at.s0, last + (value - last) / (1 - slope));
-        double next = seed->jumps > 0 ? next_guess(&root, last, value, slope) : straight;
+        double next = survey->step_count > 0 ? next_guess(&root, last, value, slope) : straight;
         if (!(fabs(next - last) > close)) {
             break;
         }
@@ -147,8 +152,8 @@ double ilsai_survey_distance(const ilsa_solver *s, front_seed *seed, double dt) 
         slope = fmax(least, fmin(limit, (fresh - value) / (next - last)));
         value = fresh;
     }
-    seed->slope = fabs(slope) < limit ? slope : 0; /* one at the limit would lead astray */
-    seed->ds_dw = at.ds_dw / (1 - slope);
-    seed->ds_inner = at.ds_inner / (1 - slope);
+    survey->slope = fabs(slope) < limit ? slope : 0; /* one at the limit would lead astray */
+    survey->ds_dw = at.ds_dw / (1 - slope);
+    survey->ds_inner = at.ds_inner / (1 - slope);
     return at.s + (value - at.s) / (1 - slope);
 }

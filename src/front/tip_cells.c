@@ -1,7 +1,7 @@
 #include "front/tip_cells.h"
 
-#include "front/survey.h"
 #include "base/tuning.h"
+#include "front/survey.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -9,14 +9,14 @@
 static double channel_leak(const ilsa_solver *s, int cell, double dt) {
     double age = s->now.time - s->field.trigger[cell], spread = s->field.spread[cell];
     age = age > 0 ? age : 0;
-    return ilsai_tipcell_full_leakoff_step(s->material.C_prime, age, dt, spread);
+    return ilsai_tip_cell_full_leakoff_step(s->material.C_prime, age, dt, spread);
 }
 
 static void add_sources(ilsa_solver *s, double dt) {
     for (int k = 0; k < s->def.source_count; k++) {
         const point_source *from = &s->sources[k];
         for (int c = 0; c < from->count; c++) {
-            s->gain[from->cell[c]] +=
+            s->source_term[from->cell[c]] +=
                 from->def.rate * from->part[c] * dt / (s->mesh.dx * s->mesh.dy);
         }
     }
@@ -77,8 +77,8 @@ static void begin_rows(void *context, int first, int end) {
             int cell = ilsai_grid_cell(&s->g, i, j);
             int channel = s->field.kind[cell] >= ILSA_CELL_SURVEY;
             s->leak[cell] = channel && ilsai_has_leakoff(s) ? channel_leak(s, cell, dt) : 0;
-            s->gain[cell] = -s->leak[cell];
-            s->edge[cell] = 0;
+            s->source_term[cell] = -s->leak[cell];
+            s->self_correction[cell] = 0;
             s->contact[cell] = channel && ilsai_contact_closed(s->field.width[cell], closure)
                                    ? CONTACT_CLOSED
                                    : CONTACT_OPEN;
@@ -86,12 +86,12 @@ static void begin_rows(void *context, int first, int end) {
     }
 }
 
-ilsa_status ilsai_rim_begin(ilsa_solver *s, double dt) {
+ilsa_status ilsai_tip_cells_begin(ilsa_solver *s, double dt) {
     box part = ilsai_box_fold(&s->g, &s->region);
     loop l = {s, NULL, dt, 0};
     int columns = (int)ilsai_box_columns(&part), rows = (int)ilsai_box_rows(&part);
-    ilsai_team_run(s->threads, begin_rows, &l, rows, 1 + ILSAI_SHARE_CELLS / (columns + 1));
-    ilsai_elasticity_set_edge(s->elastic);
+    ilsai_thread_pool_run(s->threads, begin_rows, &l, rows, 1 + ILSAI_SHARE_CELLS / (columns + 1));
+    ilsai_elasticity_make_self_terms(s->elastic);
     forget_wild_pressures(s, &part);
     ilsa_status status = check_sources(s);
     if (status == ILSA_OK) {
@@ -102,7 +102,7 @@ ilsa_status ilsai_rim_begin(ilsa_solver *s, double dt) {
 
 /* Injection alone: what the source terms of a cell are before any leak-off of this pass. */
 static void set_leak(ilsa_solver *s, int cell, double leak) {
-    s->gain[cell] += s->leak[cell] - leak;
+    s->source_term[cell] += s->leak[cell] - leak;
     s->leak[cell] = leak;
 }
 
@@ -129,7 +129,7 @@ static ilsa_status drop_unreached(ilsa_solver *s) {
 }
 
 static unsigned char classify(const ilsa_solver *s, const front_cell *c, int hold) {
-    double full = ilsai_front_full(&s->g, c->cos_a, c->sin_a);
+    double full = ilsai_march_full(&s->g, c->cos_a, c->sin_a);
     unsigned char was = s->trial.kind[c->cell];
     if (hold && was != ILSA_CELL_EMPTY && fabs(c->ell - full) < ILSAI_HOLD * full) {
         return was;
@@ -145,30 +145,30 @@ static unsigned char classify(const ilsa_solver *s, const front_cell *c, int hol
  * The path of the front in the cell up to the end of the step. The front at its start is where this
  * step's own march has it, so that what leaks in the step goes to nothing with the step.
  */
-static tipcell_history path_in_cell(const ilsa_solver *s, const front_cell *c, double dt) {
+static tip_cell_history path_in_cell(const ilsa_solver *s, const front_cell *c, double dt) {
     double t = s->now.time + dt;
-    const tip_record *record = ilsai_tip_records_find(&s->tips, c->cell);
-    tipcell_history history;
+    const tip_record *record = ilsai_asymptote_records_find(&s->tips, c->cell);
+    tip_cell_history history;
     if (record) {
         double ell = fmax(c->ell, 0);
         history = record->history;
-        ilsai_tipcell_amend(&history, ell - fmax(c->V, 0) * dt, ell);
+        ilsai_tip_cell_amend(&history, ell - fmax(c->V, 0) * dt, ell);
     } else {
         double since = c->V > 0 ? c->ell / c->V : dt;
         since = since > dt ? dt : since;
         since = since < 1e-6 * dt ? 1e-6 * dt : since;
-        ilsai_tipcell_enter(&history, t - since);
+        ilsai_tip_cell_enter(&history, t - since);
     }
-    ilsai_tipcell_record(&history, t, c->ell > 0 ? c->ell : 0);
+    ilsai_tip_cell_record(&history, t, c->ell > 0 ? c->ell : 0);
     return history;
 }
 
 /* Leak-off (4.25) in the step, per area, if the front were where c has it, and its path. */
 static double leak_for(const ilsa_solver *s, const front_cell *c, double dt,
-                       tipcell_history *history) {
-    tipcell_front at = {c->ell, c->cos_a, c->sin_a, s->g.dx, s->g.dy};
+                       tip_cell_history *history) {
+    tip_cell_front at = {c->ell, c->cos_a, c->sin_a, s->g.dx, s->g.dy};
     *history = path_in_cell(s, c, dt);
-    return ilsai_tipcell_leakoff_last(s->material.C_prime, s->velocity, &at, history) /
+    return ilsai_tip_cell_leakoff_last(s->material.C_prime, s->velocity, &at, history) /
            (s->g.dx * s->g.dy);
 }
 
@@ -176,7 +176,7 @@ static double leak_for(const ilsa_solver *s, const front_cell *c, double dt,
 static int is_cut_off(const ilsa_solver *s, const front_cell *c) {
     int open = 0;
     for (int p = 0; p < c->from.count; p++) {
-        open |= s->contact[s->seeds[c->from.seed[p]].cell] == CONTACT_OPEN;
+        open |= s->contact[s->survey_cells[c->from.survey[p]].cell] == CONTACT_OPEN;
     }
     return !open;
 }
@@ -195,36 +195,37 @@ static void leak_at_front(ilsa_solver *s, const front_cell *c, double dt, tip_re
  * The part of the widths of its jumps that a front is believed: in its survey cell they cannot be
  * more than all there is. A high barrier lets a front in by less than distances are known to.
  */
-static double jump_share(const ilsa_solver *s, const front_seed *seed) {
-    double w = ilsai_survey_jump_width(seed, seed->s), most = s->field.width[seed->cell];
+static double step_share(const ilsa_solver *s, const survey_cell *survey) {
+    double w = ilsai_survey_step_width(survey, survey->s), most = s->field.width[survey->cell];
     return w > most ? most / w : 1;
 }
 
 /* What jump k adds to a cell; by_ell with the distance to it, which grows with ell: a front that
  * has just passed a high one answers by that alone. */
-static tipcell_growth one_jump(const front_seed *seed, int k, const tipcell_front *at,
-                               double share) {
-    jump_depth d = ilsai_survey_jump_depth(seed, k);
+static tip_cell_growth one_step(const survey_cell *survey, int k, const tip_cell_front *at,
+                                double share) {
+    step_depth d = ilsai_survey_step_depth(survey, k);
     double more = ILSAI_DIFFERENCE * d.value;
-    tipcell_growth one = ilsai_tipcell_jump_growth(d.value, at);
+    tip_cell_growth one = ilsai_tip_cell_step_growth(d.value, at);
     if (more > 0 && share == 1) {
-        double deeper = ilsai_tipcell_jump_growth(d.value + more, at).volume;
+        double deeper = ilsai_tip_cell_step_growth(d.value + more, at).volume;
         one.by_ell += d.by_s * (deeper - one.volume) / more;
     }
     return one;
 }
 
-/* Mean over the cell of what the jumps of the stress behind its front add, from the seeds' sides.
+/* Mean over the cell of what the jumps of the stress behind its front add, from the survey_cells'
+ * sides.
  */
-static tipcell_growth jump_width(const ilsa_solver *s, const front_cell *c,
-                                 const tipcell_front *at) {
-    tipcell_growth sum = {0, 0, 0};
+static tip_cell_growth stress_step_width(const ilsa_solver *s, const front_cell *c,
+                                         const tip_cell_front *at) {
+    tip_cell_growth sum = {0, 0, 0};
     for (int p = 0; p < c->from.count; p++) {
-        const front_seed *seed = &s->seeds[c->from.seed[p]];
-        double share = seed->jumps > 0 ? jump_share(s, seed) : 0;
-        for (int k = 0; k < seed->jumps; k++) {
-            double part = share * c->from.weight[p] * seed->jump[k].height / (s->g.dx * s->g.dy);
-            tipcell_growth one = one_jump(seed, k, at, share);
+        const survey_cell *survey = &s->survey_cells[c->from.survey[p]];
+        double share = survey->step_count > 0 ? step_share(s, survey) : 0;
+        for (int k = 0; k < survey->step_count; k++) {
+            double part = share * c->from.weight[p] * survey->step[k].height / (s->g.dx * s->g.dy);
+            tip_cell_growth one = one_step(survey, k, at, share);
             sum.volume += part * one.volume;
             sum.by_ell += part * one.by_ell;
         }
@@ -237,22 +238,22 @@ static tipcell_growth jump_width(const ilsa_solver *s, const front_cell *c,
  * one of the velocity too; of one at rest by the logarithm of its stress intensity. In a cell that
  * has just filled it is the first guess of the coupled solve.
  */
-typedef struct rim_width {
+typedef struct tip_width {
     double value, slope;
-} rim_width;
+} tip_width;
 
-static rim_width mean_width(const ilsa_solver *s, const front_cell *c, double dt) {
-    tipcell_front at = {c->ell, c->cos_a, c->sin_a, s->g.dx, s->g.dy};
+static tip_width mean_width(const ilsa_solver *s, const front_cell *c, double dt) {
+    tip_cell_front at = {c->ell, c->cos_a, c->sin_a, s->g.dx, s->g.dy};
     double K_I = s->material.E_prime * c->K_num / c->K_den, V = c->V > 0 ? c->V : 0;
     double area = s->g.dx * s->g.dy;
-    tipcell_growth growth = ilsai_tipcell_growth(&s->asymptote, V, K_I, &at);
-    rim_width w = {growth.volume / area, V > 0 ? growth.by_ell / area : growth.volume / area};
+    tip_cell_growth growth = ilsai_tip_cell_growth(&s->tip_material, V, K_I, &at);
+    tip_width w = {growth.volume / area, V > 0 ? growth.by_ell / area : growth.volume / area};
     if (V > 0) {
         w.slope += growth.by_log_V / (area * V * dt);
     }
-    tipcell_growth added = jump_width(s, c, &at);
+    tip_cell_growth added = stress_step_width(s, c, &at);
     w.slope += V > 0 ? added.by_ell : 0;
-    w.value = fmax(w.value + added.volume, ILSAI_JUMP_LEFT * w.value);
+    w.value = fmax(w.value + added.volume, ILSAI_STRESS_STEP_LEFT * w.value);
     return w;
 }
 
@@ -267,10 +268,10 @@ static void set_cell(ilsa_solver *s, const front_cell *c, double dt, int hold, i
         return;
     }
     if (kind == ILSA_CELL_TIP || was != ILSA_CELL_CHANNEL) {
-        rim_width w = mean_width(s, c, dt);
+        tip_width w = mean_width(s, c, dt);
         double most = is_cut_off(s, c) ? s->field.width[c->cell] : w.value;
         s->trial.width[c->cell] = fmin(w.value, most);
-        s->by_advance[k] = w.slope;
+        s->width_slope[k] = w.slope;
     }
     if (ilsai_has_leakoff(s)) {
         leak_at_front(s, c, dt, &s->trial_tips.at[k]);
@@ -285,31 +286,33 @@ static void set_cells(void *context, int first, int end) {
 }
 
 /* What the self terms of the survey cells and of cells that have filled in the step lack. */
-static edge_term edge_of(const ilsa_solver *s, const front_cell *c) {
+static self_term self_term_of(const ilsa_solver *s, const front_cell *c) {
     double at = -c->T, V = c->V > 0 ? c->V : 0;
-    double w = V > 0 ? ilsai_tip_width(&s->asymptote, V, at) : 1;
-    edge_front seen = {at, c->cos_a, c->sin_a, ilsai_tip_exponent(&s->asymptote, V, at, w)};
-    return ilsai_elasticity_edge(s->elastic, &seen);
+    double w = V > 0 ? ilsai_asymptote_width(&s->tip_material, V, at) : 1;
+    self_term_front seen = {at, c->cos_a, c->sin_a,
+                            ilsai_asymptote_exponent(&s->tip_material, V, at, w)};
+    return ilsai_elasticity_self_term(s->elastic, &seen);
 }
 
-static edge_term edge_of_seed(const ilsa_solver *s, const front_seed *seed) {
-    edge_front seen = ilsai_survey_front(seed);
-    return ilsai_elasticity_edge(s->elastic, &seen);
+static self_term self_term_of_survey(const ilsa_solver *s, const survey_cell *survey) {
+    self_term_front seen = ilsai_survey_front(survey);
+    return ilsai_elasticity_self_term(s->elastic, &seen);
 }
 
-static void set_seed_edges(void *context, int first, int end) {
+static void set_survey_self_terms(void *context, int first, int end) {
     ilsa_solver *s = ((const loop *)context)->s;
     for (int k = first; k < end; k++) {
-        s->edge[s->seeds[k].cell] = edge_of_seed(s, &s->seeds[k]).value;
+        s->self_correction[s->survey_cells[k].cell] =
+            self_term_of_survey(s, &s->survey_cells[k]).value;
     }
 }
 
-static void set_cell_edges(void *context, int first, int end) {
+static void set_filled_self_terms(void *context, int first, int end) {
     const loop *l = context;
     for (int k = first; k < end; k++) {
         const front_cell *c = &l->cells[k];
         int full = l->s->trial.kind[c->cell] >= ILSA_CELL_SURVEY;
-        l->s->edge[c->cell] = full ? edge_of(l->s, c).value : 0;
+        l->s->self_correction[c->cell] = full ? self_term_of(l->s, c).value : 0;
     }
 }
 
@@ -346,18 +349,18 @@ static int grow_footprint(ilsa_solver *s, int cell) {
 
 /* Room for what the cells of a march and the survey cells answer. */
 static ilsa_status reserve(ilsa_solver *s, int count) {
-    if (count + s->seed_count <= s->response_capacity) {
+    if (count + s->survey_count <= s->sensitivity_capacity) {
         return ILSA_OK;
     }
-    size_t most = (size_t)count + (size_t)s->seed_count, capacity = most + most / 2 + 16;
-    tip_response *responses = realloc(s->responses, capacity * sizeof *responses);
-    s->responses = responses ? responses : s->responses;
-    double *by_advance = realloc(s->by_advance, capacity * sizeof *by_advance);
-    s->by_advance = by_advance ? by_advance : s->by_advance;
-    if (!responses || !by_advance) {
+    size_t most = (size_t)count + (size_t)s->survey_count, capacity = most + most / 2 + 16;
+    sensitivity *sensitivities = realloc(s->sensitivities, capacity * sizeof *sensitivities);
+    s->sensitivities = sensitivities ? sensitivities : s->sensitivities;
+    double *width_slope = realloc(s->width_slope, capacity * sizeof *width_slope);
+    s->width_slope = width_slope ? width_slope : s->width_slope;
+    if (!sensitivities || !width_slope) {
         return ILSA_ERR_MEMORY;
     }
-    s->response_capacity = (int)capacity;
+    s->sensitivity_capacity = (int)capacity;
     return ILSA_OK;
 }
 
@@ -388,13 +391,13 @@ static ilsa_status wet_cells(ilsa_solver *s, const front_cell *cells, int count)
     return ILSA_OK;
 }
 
-ilsa_status ilsai_rim_set(ilsa_solver *s, double dt, int hold) {
+ilsa_status ilsai_tip_cells_update(ilsa_solver *s, double dt, int hold) {
     int count;
-    const front_cell *cells = ilsai_front_cells(s->march, &count);
+    const front_cell *cells = ilsai_march_cells(s->march, &count);
     if (reserve(s, count) != ILSA_OK ||
         (ilsai_has_leakoff(s) &&
-         ilsai_tip_records_reserve(&s->trial_tips, count << (s->g.mirror_x + s->g.mirror_y)) !=
-             ILSA_OK)) {
+         ilsai_asymptote_records_reserve(&s->trial_tips,
+                                         count << (s->g.mirror_x + s->g.mirror_y)) != ILSA_OK)) {
         return ILSA_ERR_MEMORY;
     }
     ilsa_status status = drop_unreached(s);
@@ -402,23 +405,24 @@ ilsa_status ilsai_rim_set(ilsa_solver *s, double dt, int hold) {
         return status;
     }
     loop l = {s, cells, dt, hold};
-    ilsai_team_run(s->threads, set_cells, &l, count, ILSAI_SHARE_FRONT);
+    ilsai_thread_pool_run(s->threads, set_cells, &l, count, ILSAI_SHARE_FRONT);
     if (ilsai_has_leakoff(s)) {
         pack_records(s, cells, count);
     }
-    ilsai_team_run(s->threads, set_seed_edges, &l, s->seed_count, ILSAI_SHARE_FRONT);
-    ilsai_team_run(s->threads, set_cell_edges, &l, count, ILSAI_SHARE_FRONT);
+    ilsai_thread_pool_run(s->threads, set_survey_self_terms, &l, s->survey_count,
+                          ILSAI_SHARE_FRONT);
+    ilsai_thread_pool_run(s->threads, set_filled_self_terms, &l, count, ILSAI_SHARE_FRONT);
     return wet_cells(s, cells, count);
 }
 
 /* What of a cell answers, and how, to an advance of the front or to a width. */
 typedef struct answer {
-    double width, gain, pressure;
+    double width, source_term, pressure;
 } answer;
 
 /* Derivatives by an advance of the front within the step. */
 static answer differentiate(const ilsa_solver *s, const front_cell *c, double dt,
-                            double by_advance) {
+                            double width_slope) {
     double small = ILSAI_DIFFERENCE * ilsai_grid_h(&s->g);
     front_cell moved = *c;
     moved.ell += small;
@@ -426,46 +430,46 @@ static answer differentiate(const ilsa_solver *s, const front_cell *c, double dt
     moved.V += small / dt;
     answer a = {0, 0, 0};
     if (s->trial.kind[c->cell] == ILSA_CELL_TIP) {
-        a.width = by_advance;
+        a.width = width_slope;
     } else {
-        a.pressure = edge_of(s, c).slope * s->trial.width[c->cell];
+        a.pressure = self_term_of(s, c).slope * s->trial.width[c->cell];
     }
     if (ilsai_has_leakoff(s)) {
-        tipcell_history path;
-        a.gain = (s->leak[c->cell] - leak_for(s, &moved, dt, &path)) / small;
+        tip_cell_history path;
+        a.source_term = (s->leak[c->cell] - leak_for(s, &moved, dt, &path)) / small;
     }
     return a;
 }
 
-/* Adds a cell that a response answers to. */
-static void answer_to(tip_response *r, int cell, const answer *a, double weight) {
+/* Adds a cell that a sensitivity answers to. */
+static void depend_on(sensitivity *r, int cell, const answer *a, double weight) {
     r->from[r->count] = cell;
     r->width[r->count] = weight * a->width;
-    r->gain[r->count] = weight * a->gain;
+    r->source_term[r->count] = weight * a->source_term;
     r->pressure[r->count++] = weight * a->pressure;
 }
 
 /* To the front that a survey cell places. */
-static void answer_to_seed(tip_response *r, const front_seed *seed, const answer *a,
-                           double weight) {
-    answer_to(r, seed->cell, a, weight * seed->ds_dw);
-    if (seed->inner >= 0) {
-        answer_to(r, seed->inner, a, weight * seed->ds_inner);
+static void depend_on_survey(sensitivity *r, const survey_cell *survey, const answer *a,
+                             double weight) {
+    depend_on(r, survey->cell, a, weight * survey->ds_dw);
+    if (survey->inner >= 0) {
+        depend_on(r, survey->inner, a, weight * survey->ds_inner);
     }
 }
 
 /* A front at rest answers with its stress intensity, (4.19); a moving one by moving. */
-static tip_response response_in(const ilsa_solver *s, const front_cell *c, double dt,
-                                double by_advance) {
-    tip_response r = {.cell = c->cell};
-    answer moving = differentiate(s, c, dt, by_advance), resting = {by_advance, 0, 0};
+static sensitivity sensitivity_in(const ilsa_solver *s, const front_cell *c, double dt,
+                                  double width_slope) {
+    sensitivity r = {.cell = c->cell};
+    answer moving = differentiate(s, c, dt, width_slope), resting = {width_slope, 0, 0};
     for (int p = 0; p < c->from.count; p++) {
-        const front_seed *seed = &s->seeds[c->from.seed[p]];
+        const survey_cell *survey = &s->survey_cells[c->from.survey[p]];
         if (c->V > 0) {
-            answer_to_seed(&r, seed, &moving, c->from.weight[p]);
+            depend_on_survey(&r, survey, &moving, c->from.weight[p]);
         } else if (s->trial.kind[c->cell] == ILSA_CELL_TIP && c->K_num > 0) {
-            double part = ilsai_survey_smooth_slope(s, seed);
-            answer_to(&r, seed->cell, &resting, part * sqrt(seed->s) / c->K_num);
+            double part = ilsai_survey_smooth_slope(s, survey);
+            depend_on(&r, survey->cell, &resting, part * sqrt(survey->s) / c->K_num);
         }
     }
     return r;
@@ -475,42 +479,43 @@ static tip_response response_in(const ilsa_solver *s, const front_cell *c, doubl
  * The self term of a survey cell changes as the front moves away from it: nearly all of it where
  * toughness rules and the cell has just filled. Newton's matrix has to keep the most of it.
  */
-static tip_response response_of_seed(const ilsa_solver *s, const front_seed *seed) {
-    tip_response r = {.cell = seed->cell};
+static sensitivity sensitivity_of_survey(const ilsa_solver *s, const survey_cell *survey) {
+    sensitivity r = {.cell = survey->cell};
     double self = s->material.E_prime * ilsai_kernel(0, 0, s->g.dx, s->g.dy);
-    double slope = edge_of_seed(s, seed).slope * s->trial.width[seed->cell];
-    answer a = {.pressure = fmax(slope * seed->ds_dw, -ILSAI_EDGE_GIVES * self)};
-    if (seed->ds_dw > 0) {
-        a.pressure /= seed->ds_dw;
+    double slope = self_term_of_survey(s, survey).slope * s->trial.width[survey->cell];
+    answer a = {.pressure = fmax(slope * survey->ds_dw, -ILSAI_SELF_TERM_GIVES * self)};
+    if (survey->ds_dw > 0) {
+        a.pressure /= survey->ds_dw;
     }
-    answer_to_seed(&r, seed, &a, 1);
+    depend_on_survey(&r, survey, &a, 1);
     return r;
 }
 
-static void respond_seeds(void *context, int first, int end) {
+static void set_survey_sensitivities(void *context, int first, int end) {
     ilsa_solver *s = ((const loop *)context)->s;
     for (int k = first; k < end; k++) {
-        s->responses[k] = response_of_seed(s, &s->seeds[k]);
+        s->sensitivities[k] = sensitivity_of_survey(s, &s->survey_cells[k]);
     }
 }
 
 /* A cell that is not wet answers to nothing. */
-static void respond_cells(void *context, int first, int end) {
+static void set_cell_sensitivities(void *context, int first, int end) {
     const loop *l = context;
     ilsa_solver *s = l->s;
     for (int k = first; k < end; k++) {
         const front_cell *c = &l->cells[k];
         int wet = s->trial.kind[c->cell] != ILSA_CELL_EMPTY;
-        s->responses[s->seed_count + k] =
-            wet ? response_in(s, c, l->dt, s->by_advance[k]) : (tip_response){.cell = c->cell};
+        s->sensitivities[s->survey_count + k] =
+            wet ? sensitivity_in(s, c, l->dt, s->width_slope[k]) : (sensitivity){.cell = c->cell};
     }
 }
 
-void ilsai_rim_respond(ilsa_solver *s, double dt) {
+void ilsai_tip_cells_sensitivities(ilsa_solver *s, double dt) {
     int count;
-    const front_cell *cells = ilsai_front_cells(s->march, &count);
+    const front_cell *cells = ilsai_march_cells(s->march, &count);
     loop l = {s, cells, dt, 0};
-    s->response_count = s->seed_count + count;
-    ilsai_team_run(s->threads, respond_seeds, &l, s->seed_count, ILSAI_SHARE_FRONT);
-    ilsai_team_run(s->threads, respond_cells, &l, count, ILSAI_SHARE_FRONT);
+    s->sensitivity_count = s->survey_count + count;
+    ilsai_thread_pool_run(s->threads, set_survey_sensitivities, &l, s->survey_count,
+                          ILSAI_SHARE_FRONT);
+    ilsai_thread_pool_run(s->threads, set_cell_sensitivities, &l, count, ILSAI_SHARE_FRONT);
 }

@@ -8,19 +8,19 @@
 #include "step/state.h"
 
 /* Source terms of the cells that were channel when the step began: they hold for all passes. */
-ilsa_status ilsai_rim_begin(ilsa_solver *s, double dt);
+ilsa_status ilsai_tip_cells_begin(ilsa_solver *s, double dt);
 
 /*
  * Kinds, tip widths, leak-off and footprint for the front as marched. hold: a cell that the front
  * is about to fill keeps the kind it had in the pass before. ILSA_MESH_EDGE, ILSA_ERR_MEMORY,
  * ILSA_STEP_REJECTED (a wet cell is out of the front's reach).
  */
-ilsa_status ilsai_rim_set(ilsa_solver *s, double dt, int hold);
+ilsa_status ilsai_tip_cells_update(ilsa_solver *s, double dt, int hold);
 
 /*
  * How widths and leak-off of the cells at the front, as they are set, answer to the widths of the
  * survey cells: the derivatives of (4.18) and (4.25) through (4.9) and (4.12).
  */
-void ilsai_rim_respond(ilsa_solver *s, double dt);
+void ilsai_tip_cells_sensitivities(ilsa_solver *s, double dt);
 
 #endif

@@ -1,7 +1,7 @@
 #include "model/stress.h"
 #include "base/error.h"
-#include "model/mesh.h"
 #include "base/tuning.h"
+#include "model/mesh.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,25 +1,26 @@
 #include "solve/coupled.h"
 
 #include "base/clock.h"
+#include "base/tuning.h"
 #include "solve/gmres.h"
 #include "solve/jacobian.h"
-#include "base/tuning.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 struct coupled {
-    active cells;
-    flow fluid;
+    unknowns cells;
+    lubrication fluid;
     jacobian matrix;
     gmres *krylov;
     double *rhs, *step;
-    double *shift;  /* change of the source terms at the front in this solve */
-    double *lift;   /* change of the pressures there for the front's move in this solve */
-    double *caught; /* of closed cells: the pressure with which they closed or entered the solve */
+    double *source_change;    /* change of the source terms at the front in this solve */
+    double *front_pressure;   /* change of the pressures there for the front's move in this solve */
+    double *closing_pressure; /* of closed cells: the pressure with which they closed or entered the
+                                 solve */
     double *stress; /* of channel cells: the pressure that holds them at their width, (4.7) */
     int capacity;
-    int response_capacity;
+    int sensitivity_capacity;
     int closed;      /* cells that are closed or drain */
     double residual; /* of the last linear solve, relative */
 };
@@ -33,7 +34,7 @@ coupled *ilsai_coupled_create(const ilsa_mesh_def *mesh) {
     c->krylov = ilsai_gmres_create(ILSAI_GMRES_RESTART);
     c->matrix.width = calloc(mesh_cells, sizeof(double));
     c->matrix.pressure = calloc(mesh_cells, sizeof(double));
-    if (ilsai_active_create(&c->cells, mesh) != ILSA_OK || !c->krylov || !c->matrix.width ||
+    if (ilsai_unknowns_create(&c->cells, mesh) != ILSA_OK || !c->krylov || !c->matrix.width ||
         !c->matrix.pressure) {
         ilsai_coupled_destroy(&c);
     }
@@ -42,16 +43,16 @@ coupled *ilsai_coupled_create(const ilsa_mesh_def *mesh) {
 
 void ilsai_coupled_destroy(coupled **c) {
     if (*c) {
-        ilsai_active_destroy(&(*c)->cells);
-        ilsai_flow_destroy(&(*c)->fluid);
+        ilsai_unknowns_destroy(&(*c)->cells);
+        ilsai_lubrication_destroy(&(*c)->fluid);
         ilsai_jacobian_destroy(&(*c)->matrix);
         ilsai_gmres_destroy(&(*c)->krylov);
         free((*c)->rhs);
         free((*c)->step);
-        free((*c)->shift);
-        free((*c)->lift);
+        free((*c)->source_change);
+        free((*c)->front_pressure);
         free((*c)->stress);
-        free((*c)->caught);
+        free((*c)->closing_pressure);
         free(*c);
         *c = NULL;
     }
@@ -62,12 +63,17 @@ int ilsai_coupled_unknowns(const coupled *c) {
 }
 
 static ilsa_status reserve(coupled *c, int count) {
-    if (ilsai_flow_reserve(&c->fluid, count) != ILSA_OK ||
+    if (ilsai_lubrication_reserve(&c->fluid, count) != ILSA_OK ||
         ilsai_gmres_reserve(c->krylov, (size_t)count) != ILSA_OK) {
         return ILSA_ERR_MEMORY;
     }
-    double **arrays[] = {&c->rhs,    &c->step,   &c->shift,      &c->lift,
-                         &c->stress, &c->caught, &c->matrix.edge};
+    double **arrays[] = {&c->rhs,
+                         &c->step,
+                         &c->source_change,
+                         &c->front_pressure,
+                         &c->stress,
+                         &c->closing_pressure,
+                         &c->matrix.self_correction};
     size_t capacity = (size_t)count + (size_t)count / 2 + 64;
     for (size_t k = 0; count > c->capacity && k < sizeof arrays / sizeof *arrays; k++) {
         double *fresh = realloc(*arrays[k], capacity * sizeof *fresh);
@@ -84,23 +90,23 @@ static contact contact_of(coupled *c, const coupled_problem *problem, int late) 
     return (contact){.field = problem->contact,
                      .cells = &c->cells,
                      .old = problem->width_old,
-                     .shift = c->shift,
+                     .source_change = c->source_change,
                      .stress = c->stress,
-                     .caught = c->caught,
+                     .closing_pressure = c->closing_pressure,
                      .width = problem->width,
                      .pressure = problem->pressure,
                      .late = late};
 }
 
-/* A loop over the active cells. */
+/* A loop over the numbered cells. */
 typedef struct loop {
     coupled *c;
     const coupled_problem *problem;
 } loop;
 
-static void share_cells(team_function *function, coupled *c, const coupled_problem *problem) {
+static void share_cells(pool_function *function, coupled *c, const coupled_problem *problem) {
     loop l = {c, problem};
-    ilsai_team_run(problem->threads, function, &l, c->cells.count, ILSAI_SHARE_CELLS);
+    ilsai_thread_pool_run(problem->threads, function, &l, c->cells.count, ILSAI_SHARE_CELLS);
 }
 
 static void add_pressures(void *context, int first, int end) {
@@ -110,7 +116,8 @@ static void add_pressures(void *context, int first, int end) {
         int cell = c->cells.cell[k];
         if (c->cells.unknown[k] != UNKNOWN_PRESSURE) {
             c->stress[k] = problem->sigma[cell] + c->matrix.pressure[cell] +
-                           c->matrix.edge[k] * problem->width[cell] + c->lift[k];
+                           c->matrix.self_correction[k] * problem->width[cell] +
+                           c->front_pressure[k];
         }
         if (c->cells.unknown[k] < UNKNOWN_PRESSURE) {
             problem->pressure[cell] = c->stress[k];
@@ -134,21 +141,21 @@ static void balance_volumes(void *context, int first, int end) {
     const coupled_problem *problem = ((const loop *)context)->problem;
     for (int k = first; k < end; k++) {
         int cell = c->cells.cell[k];
-        double gain = ilsai_flow_gain_of(&c->fluid, &c->cells, problem->pressure, k);
-        double source = problem->gain[cell] + c->shift[k];
-        source += problem->contact.relief ? problem->contact.relief[cell] : 0;
+        double gain = ilsai_lubrication_inflow(&c->fluid, &c->cells, problem->pressure, k);
+        double source = problem->source_term[cell] + c->source_change[k];
+        source += problem->contact.retained ? problem->contact.retained[cell] : 0;
         c->rhs[k] = gain + (source - (problem->width[cell] - problem->width_old[cell]));
         if (c->cells.unknown[k] == UNKNOWN_CONTACT) {
             c->rhs[k] -= ilsai_jacobian_without_width(&c->matrix, k) *
-                         (problem->pressure[cell] - c->caught[k]);
+                         (problem->pressure[cell] - c->closing_pressure[k]);
         }
     }
 }
 
 /* rhs = -(w - w_old - dt A(w) p - S), (4.4). */
 static void set_rhs(coupled *c, const coupled_problem *problem) {
-    ilsai_flow_set(&c->fluid, &c->cells, problem->g, problem->width, problem->width_old,
-                   problem->pressure, problem->dt / problem->mu_prime);
+    ilsai_lubrication_set(&c->fluid, &c->cells, problem->g, problem->width, problem->width_old,
+                          problem->pressure, problem->dt / problem->mu_prime);
     share_cells(balance_volumes, c, problem);
 }
 
@@ -182,24 +189,24 @@ static double step_length(const coupled *c, const coupled_problem *problem) {
     return length;
 }
 
-/* Changes the unknown of active cell k, and what of the cell answers to the others'. */
+/* Changes the unknown of numbered cell k, and what of the cell answers to the others'. */
 static void move_cell(const coupled *c, const coupled_problem *problem, int k, double length) {
     int cell = c->cells.cell[k];
     double delta = length * c->step[k], *width = &problem->width[cell];
     switch (c->cells.unknown[k]) {
     case UNKNOWN_WIDTH:
         *width += delta;
-        c->lift[k] += length * ilsai_jacobian_edge_pressure(&c->matrix, k, c->step);
+        c->front_pressure[k] += length * ilsai_jacobian_front_pressure(&c->matrix, k, c->step);
         break;
     case UNKNOWN_LEAK:
-        problem->contact.relief[cell] += delta;
+        problem->contact.retained[cell] += delta;
         break;
     default:
         problem->pressure[cell] += delta;
         delta = length * ilsai_jacobian_tip_width(&c->matrix, k, c->step);
         *width = fmax(*width + delta, (1 - ILSAI_WIDTH_DROP) * *width);
     }
-    c->shift[k] += length * ilsai_jacobian_tip_gain(&c->matrix, k, c->step);
+    c->source_change[k] += length * ilsai_jacobian_tip_source(&c->matrix, k, c->step);
 }
 
 /* What a Newton step has done. */
@@ -243,7 +250,7 @@ static progress take_step(coupled *c, const coupled_problem *problem, double len
             change = fabs(delta) > change ? fabs(delta) : change;
             switched += faces.field.state && ilsai_contact_bound(&faces, k);
         } else if (c->cells.unknown[k] == UNKNOWN_CONTACT) {
-            switched += ilsai_contact_lifts(&faces, k);
+            switched += ilsai_contact_opens(&faces, k);
         }
     }
     return (progress){isfinite(sum) && largest > 0 ? change / largest : NAN, switched};
@@ -279,7 +286,7 @@ static int reopen(coupled *c, const coupled_problem *problem, int late) {
     c->closed = 0;
     for (int k = 0; k < c->cells.count; k++) {
         const unsigned char *unknown = &c->cells.unknown[k];
-        if (*unknown == UNKNOWN_CONTACT && ilsai_contact_lifts(&faces, k)) {
+        if (*unknown == UNKNOWN_CONTACT && ilsai_contact_opens(&faces, k)) {
             ilsai_contact_reopen(&faces, k);
             opened++;
         }
@@ -342,26 +349,27 @@ static ilsa_status newton(coupled *c, const coupled_problem *problem, coupled_co
     return ILSA_STEP_REJECTED;
 }
 
-/* Which active cell has which response. */
-static ilsa_status find_responses(coupled *c, const coupled_problem *problem) {
-    if (c->cells.count > c->response_capacity) {
+/* Which numbered cell has which sensitivity. */
+static ilsa_status find_sensitivities(coupled *c, const coupled_problem *problem) {
+    if (c->cells.count > c->sensitivity_capacity) {
         size_t capacity = (size_t)c->cells.count + (size_t)c->cells.count / 2 + 64;
-        int *fresh = realloc(c->matrix.response_of, capacity * sizeof *fresh);
+        int *fresh = realloc(c->matrix.sensitivity_of, capacity * sizeof *fresh);
         if (!fresh) {
             return ILSA_ERR_MEMORY;
         }
-        c->matrix.response_of = fresh;
-        c->response_capacity = (int)capacity;
+        c->matrix.sensitivity_of = fresh;
+        c->sensitivity_capacity = (int)capacity;
     }
     for (int k = 0; k < c->cells.count; k++) {
-        c->matrix.response_of[k] = -1;
-        c->shift[k] = c->lift[k] = 0;
-        c->matrix.edge[k] = problem->edge ? problem->edge[c->cells.cell[k]] : 0;
+        c->matrix.sensitivity_of[k] = -1;
+        c->source_change[k] = c->front_pressure[k] = 0;
+        c->matrix.self_correction[k] =
+            problem->self_correction ? problem->self_correction[c->cells.cell[k]] : 0;
     }
-    for (int r = 0; r < problem->response_count; r++) {
-        int k = c->cells.slot[problem->response[r].cell];
+    for (int r = 0; r < problem->sensitivity_count; r++) {
+        int k = c->cells.number[problem->sensitivity[r].cell];
         if (k >= 0) {
-            c->matrix.response_of[k] = r;
+            c->matrix.sensitivity_of[k] = r;
         }
     }
     return ILSA_OK;
@@ -378,7 +386,7 @@ static ilsa_status set_box(const coupled_problem *problem) {
 ilsa_status ilsai_coupled_solve(coupled *c, const coupled_problem *problem,
                                 coupled_counts *counts) {
     ilsa_status status =
-        ilsai_active_set(&c->cells, problem->g, &problem->footprint, problem->kind);
+        ilsai_unknowns_set(&c->cells, problem->g, &problem->footprint, problem->kind);
     if (status != ILSA_OK || reserve(c, c->cells.count) != ILSA_OK) {
         return ILSA_ERR_MEMORY;
     }
@@ -389,8 +397,8 @@ ilsa_status ilsai_coupled_solve(coupled *c, const coupled_problem *problem,
     c->matrix.a = &c->cells;
     c->matrix.f = &c->fluid;
     c->matrix.e = problem->e;
-    c->matrix.response = problem->response_count > 0 ? problem->response : NULL;
-    if (find_responses(c, problem) != ILSA_OK) {
+    c->matrix.sensitivity = problem->sensitivity_count > 0 ? problem->sensitivity : NULL;
+    if (find_sensitivities(c, problem) != ILSA_OK) {
         return ILSA_ERR_MEMORY;
     }
     if (problem->contact.state) {

@@ -26,23 +26,24 @@ void ilsai_jacobian_destroy(jacobian *m) {
     free(m->full);
     free(m->influence);
     free(m->pivots);
-    free(m->response_of);
-    free(m->edge);
+    free(m->sensitivity_of);
+    free(m->self_correction);
     free(m->place);
     free(m->weight);
     ilsai_multigrid_destroy(&m->pressures);
-    ilsai_nearfield_destroy(&m->widths);
+    ilsai_near_field_destroy(&m->widths);
     memset(m, 0, sizeof *m);
 }
 
 /* Closed cells answer to nothing. */
-static const tip_response *response_of(const jacobian *m, int k) {
+static const sensitivity *sensitivity_of(const jacobian *m, int k) {
     int answers = m->a->unknown[k] == UNKNOWN_WIDTH || m->a->unknown[k] == UNKNOWN_PRESSURE;
-    return m->response && answers && m->response_of[k] >= 0 ? &m->response[m->response_of[k]]
-                                                            : NULL;
+    return m->sensitivity && answers && m->sensitivity_of[k] >= 0
+               ? &m->sensitivity[m->sensitivity_of[k]]
+               : NULL;
 }
 
-/* Whether the width of active cell k is an unknown. */
+/* Whether the width of numbered cell k is an unknown. */
 static int is_free(const jacobian *m, int k) {
     return m->a->unknown[k] == UNKNOWN_WIDTH;
 }
@@ -64,42 +65,42 @@ double ilsai_jacobian_without_width(const jacobian *m, int k) {
                                         : 0;
 }
 
-/* Sum of a response's weights times the changes of the widths it answers to. */
-static double respond(const jacobian *m, const tip_response *r, const double *weight,
+/* Sum of a sensitivity's weights times the changes of the widths it answers to. */
+static double respond(const jacobian *m, const sensitivity *r, const double *weight,
                       const double *x) {
     double sum = 0;
     for (int p = 0; r && p < r->count; p++) {
-        int slot = m->a->slot[r->from[p]];
-        sum += is_free(m, slot) ? weight[p] * x[slot] : 0;
+        int number = m->a->number[r->from[p]];
+        sum += is_free(m, number) ? weight[p] * x[number] : 0;
     }
     return sum;
 }
 
 double ilsai_jacobian_tip_width(const jacobian *m, int k, const double *x) {
-    const tip_response *r = response_of(m, k);
+    const sensitivity *r = sensitivity_of(m, k);
     return r ? respond(m, r, r->width, x) : 0;
 }
 
-double ilsai_jacobian_tip_gain(const jacobian *m, int k, const double *x) {
-    const tip_response *r = response_of(m, k);
-    return r ? respond(m, r, r->gain, x) : 0;
+double ilsai_jacobian_tip_source(const jacobian *m, int k, const double *x) {
+    const sensitivity *r = sensitivity_of(m, k);
+    return r ? respond(m, r, r->source_term, x) : 0;
 }
 
-double ilsai_jacobian_edge_pressure(const jacobian *m, int k, const double *x) {
-    const tip_response *r = response_of(m, k);
+double ilsai_jacobian_front_pressure(const jacobian *m, int k, const double *x) {
+    const sensitivity *r = sensitivity_of(m, k);
     return r ? respond(m, r, r->pressure, x) : 0;
 }
 
-/* A loop over the active cells: what a product or the preconditioner takes and gives. */
+/* A loop over the numbered cells: what a product or the preconditioner takes and gives. */
 typedef struct loop {
     jacobian *m;
     const double *x;
     double *y;
 } loop;
 
-static void share_cells(team_function *function, jacobian *m, const double *x, double *y) {
+static void share_cells(pool_function *function, jacobian *m, const double *x, double *y) {
     loop l = {m, x, y};
-    ilsai_team_run(m->threads, function, &l, m->a->count, ILSAI_SHARE_CELLS);
+    ilsai_thread_pool_run(m->threads, function, &l, m->a->count, ILSAI_SHARE_CELLS);
 }
 
 static void set_widths(void *context, int first, int end) {
@@ -116,7 +117,8 @@ static void complete_pressures(void *context, int first, int end) {
     for (int k = first; k < end; k++) {
         double *pressure = &m->pressure[m->a->cell[k]];
         if (is_free(m, k)) {
-            *pressure += m->edge[k] * l->x[k] + ilsai_jacobian_edge_pressure(m, k, l->x);
+            *pressure +=
+                m->self_correction[k] * l->x[k] + ilsai_jacobian_front_pressure(m, k, l->x);
         } else if (has_pressure(m, k)) {
             *pressure = l->x[k];
         }
@@ -145,10 +147,10 @@ static void clear_widths(void *context, int first, int end) {
 static void balance_volumes(void *context, int first, int end) {
     const loop *l = context;
     const jacobian *m = l->m;
-    const active *a = m->a;
+    const unknowns *a = m->a;
     for (int k = first; k < end; k++) {
         double w = m->width[a->cell[k]], from_width = 0;
-        double from_pressure = ilsai_flow_gain_of(m->f, a, m->pressure, k);
+        double from_pressure = ilsai_lubrication_inflow(m->f, a, m->pressure, k);
         for (int face = 0; face < GRID_FACES; face++) {
             int at = GRID_FACES * k + face, other = a->neighbour[at];
             if (other >= 0) {
@@ -156,7 +158,7 @@ static void balance_volumes(void *context, int first, int end) {
             }
         }
         double own = is_free(m, k) ? w : w + ilsai_jacobian_without_width(m, k) * l->x[k];
-        l->y[k] = own - from_width - from_pressure - ilsai_jacobian_tip_gain(m, k, l->x);
+        l->y[k] = own - from_width - from_pressure - ilsai_jacobian_tip_source(m, k, l->x);
     }
 }
 
@@ -167,10 +169,10 @@ void ilsai_jacobian_multiply(void *context, const double *x, double *y) {
     share_cells(clear_widths, m, x, NULL);
 }
 
-/* What the self term of active cell k lacks, its own part in the front's move included. */
-static double edge_self(const jacobian *m, int k) {
-    const tip_response *r = response_of(m, k);
-    double sum = m->edge[k];
+/* What the self term of numbered cell k lacks, its own part in the front's move included. */
+static double corrected_self(const jacobian *m, int k) {
+    const sensitivity *r = sensitivity_of(m, k);
+    double sum = m->self_correction[k];
     for (int p = 0; r && p < r->count; p++) {
         sum += r->from[p] == m->a->cell[k] ? r->pressure[p] : 0;
     }
@@ -229,7 +231,7 @@ static ilsa_status reserve_places(jacobian *m) {
     return ILSA_OK;
 }
 
-/* Places and weights of the active cells on the rectangle of the preconditioner. */
+/* Places and weights of the numbered cells on the rectangle of the preconditioner. */
 static void place_cells(void *context, int first, int end) {
     jacobian *m = ((const loop *)context)->m;
     const grid *g = m->g;
@@ -275,12 +277,12 @@ static void set_open_cells(void *context, int first, int end) {
     jacobian *m = ((const loop *)context)->m;
     for (int k = first; k < end; k++) {
         m->widths.open[m->place[k]] = is_free(m, k);
-        m->widths.extra[m->place[k]] = is_free(m, k) ? edge_self(m, k) : 0;
+        m->widths.extra[m->place[k]] = is_free(m, k) ? corrected_self(m, k) : 0;
     }
 }
 
 static void set_near_field(jacobian *m) {
-    nearfield *n = &m->widths;
+    near_field *n = &m->widths;
     n->mirror_x = m->g->mirror_x ? m->g->nx % 2 : -1;
     n->mirror_y = m->g->mirror_y ? m->g->ny % 2 : -1;
     n->self = ilsai_elasticity_entry(m->e, 0, 0);
@@ -296,7 +298,7 @@ ilsa_status ilsai_jacobian_set_preconditioner(jacobian *m) {
     int nx = (int)ilsai_box_columns(&part), ny = (int)ilsai_box_rows(&part);
     m->pressures.threads = m->widths.threads = m->threads;
     if (reserve_places(m) != ILSA_OK || ilsai_multigrid_shape(&m->pressures, nx, ny) != ILSA_OK ||
-        ilsai_nearfield_shape(&m->widths, nx, ny) != ILSA_OK) {
+        ilsai_near_field_shape(&m->widths, nx, ny) != ILSA_OK) {
         return ILSA_ERR_MEMORY;
     }
     share_cells(place_cells, m, NULL, NULL);
@@ -346,7 +348,7 @@ void ilsai_jacobian_precondition(void *context, const double *x, double *y) {
     share_cells(lay_out, m, x, NULL);
     ilsai_multigrid_cycle(&m->pressures);
     share_cells(hand_over, m, NULL, NULL);
-    ilsai_nearfield_solve(&m->widths);
+    ilsai_near_field_solve(&m->widths);
     share_cells(read_out, m, NULL, y);
     m->seconds_preconditioner += ilsai_clock() - start;
 }
@@ -364,22 +366,22 @@ static double folded_entry(const jacobian *m, int a, int b) {
     return sum;
 }
 
-/* Adds weights of a response, times value, to a row. */
-static void add_response(const jacobian *m, double *out, const tip_response *r,
-                         const double *weight, double value) {
+/* Adds weights of a sensitivity, times value, to a row. */
+static void add_sensitivity(const jacobian *m, double *out, const sensitivity *r,
+                            const double *weight, double value) {
     for (int p = 0; r && p < r->count; p++) {
-        int slot = m->a->slot[r->from[p]];
-        out[slot] += is_free(m, slot) ? value * weight[p] : 0;
+        int number = m->a->number[r->from[p]];
+        out[number] += is_free(m, number) ? value * weight[p] : 0;
     }
 }
 
-/* Adds what the width of an active cell is, times value, to a row. */
+/* Adds what the width of an numbered cell is, times value, to a row. */
 static void add_width(const jacobian *m, double *out, int k, double value) {
-    const tip_response *r = response_of(m, k);
+    const sensitivity *r = sensitivity_of(m, k);
     if (is_free(m, k)) {
         out[k] += value;
     } else {
-        add_response(m, out, r, r ? r->width : NULL, value);
+        add_sensitivity(m, out, r, r ? r->width : NULL, value);
     }
 }
 
@@ -391,9 +393,10 @@ static double pressure_unit(const jacobian *m) {
     return ilsai_elasticity_entry(m->e, 0, 0);
 }
 
-/* What the pressure of active cell row is in terms of the unknowns: C with the tips' responses. */
+/* What the pressure of numbered cell row is in terms of the unknowns: C with the tips'
+ * sensitivities. */
 static void fill_influence_row(jacobian *m, int row, double *out) {
-    const active *a = m->a;
+    const unknowns *a = m->a;
     memset(out, 0, (size_t)a->count * sizeof *out);
     if (has_pressure(m, row)) {
         out[row] = pressure_unit(m);
@@ -403,9 +406,9 @@ static void fill_influence_row(jacobian *m, int row, double *out) {
         add_width(m, out, k, folded_entry(m, row, k));
     }
     if (is_free(m, row)) {
-        const tip_response *own = response_of(m, row);
-        out[row] += m->edge[row];
-        add_response(m, out, own, own ? own->pressure : NULL, 1);
+        const sensitivity *own = sensitivity_of(m, row);
+        out[row] += m->self_correction[row];
+        add_sensitivity(m, out, own, own ? own->pressure : NULL, 1);
     }
 }
 
@@ -426,7 +429,7 @@ ilsa_status ilsai_jacobian_set_influence(jacobian *m) {
 
 /* Row k of the full matrix, stored as a column of the transpose. */
 static void fill_full_row(jacobian *m, int row) {
-    const active *a = m->a;
+    const unknowns *a = m->a;
     size_t n = (size_t)a->count;
     double *out = m->full + (size_t)row * n, total = 0, diagonal = 1;
     memset(out, 0, n * sizeof *out);
@@ -442,8 +445,8 @@ static void fill_full_row(jacobian *m, int row) {
     }
     cblas_daxpy((int)n, total, m->influence + (size_t)row * n, 1, out, 1);
     add_width(m, out, row, diagonal);
-    const tip_response *r = response_of(m, row);
-    add_response(m, out, r, r ? r->gain : NULL, -1);
+    const sensitivity *r = sensitivity_of(m, row);
+    add_sensitivity(m, out, r, r ? r->source_term : NULL, -1);
     if (!is_free(m, row)) {
         double unit = has_pressure(m, row) ? pressure_unit(m) : 1;
         out[row] += unit * ilsai_jacobian_without_width(m, row);

@@ -17,32 +17,33 @@
  * How the width and the source term of a cell at the front, or the pressure that its own width
  * brings about there, change with the widths of the survey cells that the front is found from.
  */
-enum { RESPONSE_PARENTS = 8 };
-typedef struct tip_response {
+enum { SENSITIVITY_PARENTS = 8 };
+typedef struct sensitivity {
     int cell;
     int count;
-    int from[RESPONSE_PARENTS]; /* mesh cells */
-    double width[RESPONSE_PARENTS], gain[RESPONSE_PARENTS], pressure[RESPONSE_PARENTS];
-} tip_response;
+    int from[SENSITIVITY_PARENTS]; /* mesh cells */
+    double width[SENSITIVITY_PARENTS], source_term[SENSITIVITY_PARENTS],
+        pressure[SENSITIVITY_PARENTS];
+} sensitivity;
 
 typedef struct jacobian {
     const grid *g;
-    const active *a;
-    const flow *f;
+    const unknowns *a;
+    const lubrication *f;
     elasticity *e;
     double *width, *pressure; /* work over the mesh; width is zero outside the channel cells */
     double *full;             /* LAPACK storage of the transpose, factored */
-    double *edge;             /* per active cell: what its self term of C lacks at the front */
-    const tip_response *response;
-    int *response_of;  /* per active cell: its response, or -1 */
-    double *influence; /* folded C between active cells, one row a cell */
+    double *self_correction;  /* per numbered cell: what its self term of C lacks at the front */
+    const sensitivity *sensitivity;
+    int *sensitivity_of; /* per numbered cell: its sensitivity, or -1 */
+    double *influence;   /* folded C between numbered cells, one row a cell */
     int *pivots;
     size_t full_capacity, pivot_capacity, place_capacity;
     multigrid pressures; /* the preconditioner, on the rectangle of the representative cells */
-    nearfield widths;
-    size_t *place;  /* of each active cell in it */
-    double *weight; /* the part of each that lies in the fold */
-    team *threads;  /* that share the loops, or NULL */
+    near_field widths;
+    size_t *place;        /* of each numbered cell in it */
+    double *weight;       /* the part of each that lies in the fold */
+    thread_pool *threads; /* that share the loops, or NULL */
     long products;
     double seconds_product, seconds_preconditioner;
 } jacobian;
@@ -51,22 +52,22 @@ typedef struct jacobian {
 void ilsai_jacobian_multiply(void *context, const double *x, double *y);
 void ilsai_jacobian_precondition(void *context, const double *x, double *y);
 
-/* Changes of the width and of the source term of active cell k for changes x of the unknowns. */
+/* Changes of the width and of the source term of numbered cell k for changes x of the unknowns. */
 double ilsai_jacobian_tip_width(const jacobian *m, int k, const double *x);
-double ilsai_jacobian_tip_gain(const jacobian *m, int k, const double *x);
+double ilsai_jacobian_tip_source(const jacobian *m, int k, const double *x);
 /*
- * What the unknown of active cell k, a tip or closed cell, adds to its own row: 0; or what does not
- * leak; or a spring that holds the pressure of a closed cell, which else were anything where hardly
- * any fluid can leave.
+ * What the unknown of numbered cell k, a tip or closed cell, adds to its own row: 0; or what does
+ * not leak; or a spring that holds the pressure of a closed cell, which else were anything where
+ * hardly any fluid can leave.
  */
 double ilsai_jacobian_without_width(const jacobian *m, int k);
 /* Change of the pressure in active channel cell k as the front moves and its width stays. */
-double ilsai_jacobian_edge_pressure(const jacobian *m, int k, const double *x);
+double ilsai_jacobian_front_pressure(const jacobian *m, int k, const double *x);
 
 /* Makes the preconditioner for the flow as it is set. ILSA_ERR_MEMORY. */
 ilsa_status ilsai_jacobian_set_preconditioner(jacobian *m);
 
-/* The influence matrix of the active cells, for ilsai_jacobian_solve_full. ILSA_ERR_MEMORY. */
+/* The influence matrix of the numbered cells, for ilsai_jacobian_solve_full. ILSA_ERR_MEMORY. */
 ilsa_status ilsai_jacobian_set_influence(jacobian *m);
 
 /* Solves M x = b by dense LU. ILSA_ERR_NUMERIC if singular. */

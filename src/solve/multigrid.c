@@ -127,8 +127,8 @@ typedef struct sweep {
 } sweep;
 
 /* Shares the rows of the level that nx is the length of. */
-static void share_rows(const multigrid *m, team_function *function, sweep *s, int rows, int nx) {
-    ilsai_team_run(m->threads, function, s, rows, 1 + ILSAI_SHARE_CELLS / nx);
+static void share_rows(const multigrid *m, pool_function *function, sweep *s, int rows, int nx) {
+    ilsai_thread_pool_run(m->threads, function, s, rows, 1 + ILSAI_SHARE_CELLS / nx);
 }
 
 static void set_inverse(void *context, int first, int last) {

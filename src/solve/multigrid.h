@@ -33,7 +33,7 @@ typedef struct multigrid {
     double *pool;
     int *maps;
     size_t room, map_room;
-    team *threads; /* that share the loops, or NULL */
+    thread_pool *threads; /* that share the loops, or NULL */
 } multigrid;
 
 void ilsai_multigrid_destroy(multigrid *m);

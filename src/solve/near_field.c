@@ -13,12 +13,12 @@
 
 enum { NEARFIELD_ARRAYS = 5 };
 
-void ilsai_nearfield_destroy(nearfield *f) {
+void ilsai_near_field_destroy(near_field *f) {
     free(f->extra);
     memset(f, 0, sizeof *f);
 }
 
-ilsa_status ilsai_nearfield_shape(nearfield *f, int nx, int ny) {
+ilsa_status ilsai_near_field_shape(near_field *f, int nx, int ny) {
     size_t size = ((size_t)nx + 2) * ((size_t)ny + 2);
     if (size > f->room) {
         size_t room = size + size / 2;
@@ -42,7 +42,7 @@ ilsa_status ilsai_nearfield_shape(nearfield *f, int nx, int ny) {
 }
 
 /* The images of a folded scene, in the border. */
-static void set_border(const nearfield *f, double *v) {
+static void set_border(const near_field *f, double *v) {
     size_t stride = (size_t)f->stride;
     for (size_t j = 1; f->mirror_x >= 0 && j <= (size_t)f->ny; j++) {
         v[j * stride] = v[j * stride + 1 + (size_t)f->mirror_x];
@@ -52,16 +52,16 @@ static void set_border(const nearfield *f, double *v) {
     }
 }
 
-static void share_rows(const nearfield *f, team_function *function, void *context) {
-    ilsai_team_run(f->threads, function, context, f->ny, 1 + ILSAI_SHARE_CELLS / f->nx);
+static void share_rows(const near_field *f, pool_function *function, void *context) {
+    ilsai_thread_pool_run(f->threads, function, context, f->ny, 1 + ILSAI_SHARE_CELLS / f->nx);
 }
 
-static size_t row(const nearfield *f, int j) {
+static size_t row(const near_field *f, int j) {
     return ((size_t)j + 1) * (size_t)f->stride + 1;
 }
 
 static void subtract_rows(void *context, int first, int end) {
-    const nearfield *f = context;
+    const near_field *f = context;
     for (int j = first; j < end; j++) {
         size_t at = row(f, j), stride = (size_t)f->stride;
         const double *s = f->step + at, *below = s - stride, *above = s + stride;
@@ -77,14 +77,14 @@ static void subtract_rows(void *context, int first, int end) {
 }
 
 /* y -= C step in the open cells. */
-static void subtract_product(nearfield *f) {
+static void subtract_product(near_field *f) {
     set_border(f, f->step);
     share_rows(f, subtract_rows, f);
 }
 
 /* A step of the iteration. */
 typedef struct move {
-    nearfield *f;
+    near_field *f;
     double a, b;
 } move;
 
@@ -116,14 +116,14 @@ static void advance_rows(void *context, int first, int end) {
 }
 
 /* Least and largest value of the stencil's symbol, which bound its eigenvalues on any cells. */
-static void bound_spectrum(const nearfield *f, double *least, double *most) {
+static void bound_spectrum(const near_field *f, double *least, double *most) {
     double x = 2 * f->beside, y = 2 * f->above, xy = 4 * f->corner;
     double at_pi = fmax(fmax(y - x - xy, x - y - xy), xy - x - y);
     *most = (1 + NEARFIELD_EXTRA) * f->self + at_pi;
     *least = fmax(f->self + x + y + xy, NEARFIELD_LEAST * *most);
 }
 
-void ilsai_nearfield_solve(nearfield *f) {
+void ilsai_near_field_solve(near_field *f) {
     double least, most;
     bound_spectrum(f, &least, &most);
     double middle = 0.5 * (most + least), half = 0.5 * (most - least), ratio = middle / half;

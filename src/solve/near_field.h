@@ -10,7 +10,7 @@
 #include <ilsa/status.h>
 #include <stddef.h>
 
-typedef struct nearfield {
+typedef struct near_field {
     int nx, ny, stride;
     int mirror_x, mirror_y; /* -1: none; 0, 1: the cell before the first is the image of this one */
     double self, beside, above, corner; /* entries of C */
@@ -19,15 +19,15 @@ typedef struct nearfield {
     double *x, *y;                      /* widths out, pressures in; y is overwritten */
     double *step;
     size_t room;
-    team *threads; /* that share the loops, or NULL */
-} nearfield;
+    thread_pool *threads; /* that share the loops, or NULL */
+} near_field;
 
-void ilsai_nearfield_destroy(nearfield *f);
+void ilsai_near_field_destroy(near_field *f);
 
 /* Room for nx by ny cells, all arrays zero. ILSA_ERR_MEMORY. */
-ilsa_status ilsai_nearfield_shape(nearfield *f, int nx, int ny);
+ilsa_status ilsai_near_field_shape(near_field *f, int nx, int ny);
 
 /* x from y. Linear in y. */
-void ilsai_nearfield_solve(nearfield *f);
+void ilsai_near_field_solve(near_field *f);
 
 #endif

@@ -1,7 +1,7 @@
 #include "base/clock.h"
-#include "step/step.h"
-#include "front/survey.h"
 #include "base/tuning.h"
+#include "front/survey.h"
+#include "step/step.h"
 #include <math.h>
 
 /* Front speed in cells per time, the fastest of the survey cells; 0 for a front at rest. */

@@ -4,9 +4,9 @@
  * With an odd count a new cell covers one old cell and the halves of its two neighbours, with an
  * even count two old cells, along each axis.
  */
+#include "base/tuning.h"
 #include "step/state.h"
 #include "step/step.h"
-#include "base/tuning.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -106,7 +106,7 @@ static double old_passing(const coarse *c, int i, int j) {
 }
 
 static double old_spread(const coarse *c, int i, int j) {
-    return on_old(c, c->s->edge, i, j);
+    return on_old(c, c->s->self_correction, i, j);
 }
 
 /* Mean of the finite values in the old cells around the new centre. */
@@ -139,8 +139,8 @@ static double depth(const ilsa_solver *s) {
 static ilsa_status measure_inwards(ilsa_solver *s) {
     grid g = ilsai_grid(&s->mesh, 0, 0);
     box region = ilsai_solver_region(s, &s->now.footprint);
-    front_seed *seeds = malloc(ilsai_mesh_cells(&s->mesh) * sizeof *seeds);
-    if (!seeds) {
+    survey_cell *survey_cells = malloc(ilsai_mesh_cells(&s->mesh) * sizeof *survey_cells);
+    if (!survey_cells) {
         return ILSA_ERR_MEMORY;
     }
     int count = 0;
@@ -149,15 +149,15 @@ static ilsa_status measure_inwards(ilsa_solver *s) {
             int cell = ilsai_grid_cell(&g, i, j), kind = s->field.kind[cell];
             s->trial.kind[cell] = kind == ILSA_CELL_CHANNEL ? ILSA_CELL_EMPTY : ILSA_CELL_CHANNEL;
             if (kind == ILSA_CELL_SURVEY) {
-                front_seed seed = {.cell = cell, .s = s->field.level[cell], .w = 1};
-                seed.V = s->field.speed[cell];
-                seeds[count++] = seed;
+                survey_cell survey = {.cell = cell, .s = s->field.level[cell], .w = 1};
+                survey.V = s->field.speed[cell];
+                survey_cells[count++] = survey;
             }
         }
     }
-    ilsa_status status =
-        ilsai_front_march(s->march, &g, &region, s->trial.kind, seeds, count, depth(s), s->gain);
-    free(seeds);
+    ilsa_status status = ilsai_march_run(s->march, &g, &region, s->trial.kind, survey_cells, count,
+                                         depth(s), s->source_term);
+    free(survey_cells);
     return status;
 }
 
@@ -183,14 +183,14 @@ static double spreading(const ilsa_solver *s, size_t cell) {
  */
 static void level_all(ilsa_solver *s) {
     int count;
-    const front_cell *cells = ilsai_front_cells(s->march, &count);
+    const front_cell *cells = ilsai_march_cells(s->march, &count);
     size_t all = ilsai_mesh_cells(&s->mesh);
     memcpy(s->trial.speed, s->field.speed, all * sizeof(double));
     for (size_t k = 0; k < all; k++) {
         int channel = s->field.kind[k] == ILSA_CELL_CHANNEL;
         s->trial.level[k] = channel ? -depth(s) : s->field.level[k];
         s->leak[k] = ilsai_has_leakoff(s) ? passing(s, k) : 0;
-        s->edge[k] = ilsai_has_leakoff(s) ? spreading(s, k) : 0;
+        s->self_correction[k] = ilsai_has_leakoff(s) ? spreading(s, k) : 0;
     }
     for (int k = 0; k < count; k++) {
         s->trial.level[cells[k].cell] = -cells[k].T;
@@ -269,13 +269,13 @@ static void lay_path(coarse *c, const front_cell *f, int i, int j) {
     double entered = first.t - fmax(since, ILSAI_DT_SMALLEST * now);
     tip_record *record = &c->tips.at[c->tips.count++];
     record->cell = f->cell;
-    ilsai_tipcell_enter(&record->history, entered > 0 ? entered : 0);
+    ilsai_tip_cell_enter(&record->history, entered > 0 ? entered : 0);
     for (int k = 0; k < count; k++) {
         if (knots[k].t > record->history.t[record->history.count - 1]) {
-            ilsai_tipcell_record(&record->history, knots[k].t, knots[k].ell);
+            ilsai_tip_cell_record(&record->history, knots[k].t, knots[k].ell);
         }
     }
-    ilsai_tipcell_record(&record->history, now, ell);
+    ilsai_tip_cell_record(&record->history, now, ell);
 }
 
 /* Level, velocity and trigger time at the new centres, of the cells the front can be near. */
@@ -313,7 +313,7 @@ static ilsa_status lay_cell(coarse *c, int i, int j) {
     if (c->field.leaked) {
         c->field.leaked[cell] = 0.25 * sum.leaked;
         if (!full) {
-            if (ilsai_tip_records_reserve(&c->tips, c->tips.count + 1) != ILSA_OK) {
+            if (ilsai_asymptote_records_reserve(&c->tips, c->tips.count + 1) != ILSA_OK) {
                 return ILSA_ERR_MEMORY;
             }
             lay_path(c, &f, i, j);

@@ -65,7 +65,7 @@ void ilsai_fields_clear_box(fields *f, const ilsa_mesh_def *mesh, const box *b) 
     }
 }
 
-ilsa_status ilsai_tip_records_reserve(tip_records *r, int count) {
+ilsa_status ilsai_asymptote_records_reserve(tip_records *r, int count) {
     if (count <= r->capacity) {
         return ILSA_OK;
     }
@@ -99,7 +99,7 @@ static void sink(tip_record *at, int place, int count) {
 }
 
 /* In place: qsort may ask for memory. */
-void ilsai_tip_records_sort(tip_records *r) {
+void ilsai_asymptote_records_sort(tip_records *r) {
     for (int k = r->count / 2 - 1; k >= 0; k--) {
         sink(r->at, k, r->count);
     }
@@ -111,7 +111,7 @@ void ilsai_tip_records_sort(tip_records *r) {
     }
 }
 
-const tip_record *ilsai_tip_records_find(const tip_records *r, int cell) {
+const tip_record *ilsai_asymptote_records_find(const tip_records *r, int cell) {
     tip_record key = {.cell = cell};
     return r->count > 0 ? bsearch(&key, r->at, (size_t)r->count, sizeof key, by_cell) : NULL;
 }

@@ -1,6 +1,6 @@
 /* What surrounds the fracture on the mesh as it is now: sources, stress, symmetry, region. */
-#include "step/state.h"
 #include "base/tuning.h"
+#include "step/state.h"
 
 #include <math.h>
 

@@ -2,14 +2,14 @@
 #ifndef ILSAI_STATE_H
 #define ILSAI_STATE_H
 
-#include "solve/anderson.h"
-#include "solve/coupled.h"
-#include "elastic/elasticity.h"
 #include "base/error.h"
-#include "front/march.h"
 #include "base/grid.h"
+#include "elastic/elasticity.h"
+#include "front/march.h"
 #include "model/mesh.h"
 #include "model/stress.h"
+#include "solve/anderson.h"
+#include "solve/coupled.h"
 #include "tip/tip_cell.h"
 #include <ilsa/ilsa.h>
 
@@ -28,7 +28,7 @@ typedef struct fields {
 /* Where the front has been in a tip cell; kept only with leak-off. */
 typedef struct tip_record {
     int cell;
-    tipcell_history history;
+    tip_cell_history history;
 } tip_record;
 
 typedef struct tip_records {
@@ -64,12 +64,13 @@ struct ilsa_solver {
     ilsa_mesh_def mesh;         /* as it is now */
     ilsa_material_def material; /* its viscosity is now.mu_prime once there is a fracture */
     int inviscid;               /* the material was given without viscosity */
-    tip_law asymptote; /* the part of it that rules the width behind the front: the tip model */
+    ilsa_material_def
+        tip_material; /* the part of it that rules the width behind the front: the tip model */
     ilsa_stress *stress;
     point_source *sources;
     ilsa_solver_def def; /* options; its pointers are NULL */
     double step_cells, tolerance;
-    tipcell_velocity velocity; /* of the front that leak-off at it counts with */
+    tip_cell_velocity velocity; /* of the front that leak-off at it counts with */
     int stress_mirror_x, stress_mirror_y;
 
     state now;
@@ -87,26 +88,26 @@ struct ilsa_solver {
     box region;   /* cells that the step may touch */
     fields trial; /* trial.trigger and trial.leaked are unused: both change on acceptance */
     tip_records trial_tips;
-    double *edge;           /* what the self terms of channel cells lack beside the front */
-    double *gain, *leak;    /* per area in this step: S of (4.4), and the leaked part of it */
-    double *relief;         /* what of leak does not, see contact.h; only with leak-off */
-    unsigned char *contact; /* which channel cells are closed, see contact.h */
-    front_seed *seeds;
+    double *self_correction;    /* what the self terms of channel cells lack beside the march */
+    double *source_term, *leak; /* per area in this step: S of (4.4), and the leaked part of it */
+    double *retained;           /* what of leak does not, see contact.h; only with leak-off */
+    unsigned char *contact;     /* which channel cells are closed, see contact.h */
+    survey_cell *survey_cells;
     double *distance, *next_distance;
-    int seed_count, seed_capacity;
-    tip_response
-        *responses;     /* of survey cells, and of cells that the march reached, in this pass */
-    double *by_advance; /* of each cell that the march reached: what an advance adds to its width;
+    int survey_count, survey_cell_capacity;
+    sensitivity
+        *sensitivities;  /* of survey cells, and of cells that the march reached, in this pass */
+    double *width_slope; /* of each cell that the march reached: what an advance adds to its width;
                            of one at rest what its stress intensity has brought */
-    int response_count, response_capacity;
+    int sensitivity_count, sensitivity_capacity;
     box trial_footprint;
 
     double *sigma;
-    front *march;
-    coupled *flow;
+    march *march;
+    coupled *coupled;
     elasticity *elastic;
-    anderson *mixer;
-    team *threads; /* that share the loops; NULL: the caller's own alone */
+    anderson *acceleration;
+    thread_pool *threads; /* that share the loops; NULL: the caller's own alone */
     error_text error;
 
     ilsa_front_point *front_points;
@@ -122,10 +123,10 @@ void ilsai_fields_clear(fields *f, size_t count);
 void ilsai_fields_clear_box(fields *f, const ilsa_mesh_def *mesh, const box *b);
 
 /* Room for count records, those present kept. */
-ilsa_status ilsai_tip_records_reserve(tip_records *r, int count);
+ilsa_status ilsai_asymptote_records_reserve(tip_records *r, int count);
 /* The record of a cell, NULL if none. */
-const tip_record *ilsai_tip_records_find(const tip_records *r, int cell);
-void ilsai_tip_records_sort(tip_records *r);
+const tip_record *ilsai_asymptote_records_find(const tip_records *r, int cell);
+void ilsai_asymptote_records_sort(tip_records *r);
 
 /* ILSA_ERR_STATE and a message unless a fracture has been started. */
 ilsa_status ilsai_check_started(const ilsa_solver *s, error_text *error);

@@ -1,10 +1,10 @@
 #include "step/step.h"
 
 #include "base/clock.h"
-#include "front/tip_cells.h"
+#include "base/tuning.h"
 #include "front/geometry.h"
 #include "front/survey.h"
-#include "base/tuning.h"
+#include "front/tip_cells.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,42 +13,42 @@ static int is_channel(unsigned char kind) {
     return kind >= ILSA_CELL_SURVEY;
 }
 
-static ilsa_status reserve_seeds(ilsa_solver *s, int count) {
-    if (count <= s->seed_capacity) {
+static ilsa_status reserve_survey(ilsa_solver *s, int count) {
+    if (count <= s->survey_cell_capacity) {
         return ILSA_OK;
     }
     size_t capacity = (size_t)count + (size_t)count / 2 + 16;
-    front_seed *seeds = realloc(s->seeds, capacity * sizeof *seeds);
-    s->seeds = seeds ? seeds : s->seeds;
+    survey_cell *survey_cells = realloc(s->survey_cells, capacity * sizeof *survey_cells);
+    s->survey_cells = survey_cells ? survey_cells : s->survey_cells;
     double *distance = realloc(s->distance, capacity * sizeof *distance);
     s->distance = distance ? distance : s->distance;
     double *next = realloc(s->next_distance, capacity * sizeof *next);
     s->next_distance = next ? next : s->next_distance;
-    if (!seeds || !distance || !next) {
+    if (!survey_cells || !distance || !next) {
         return ILSA_ERR_MEMORY;
     }
-    s->seed_capacity = (int)capacity;
+    s->survey_cell_capacity = (int)capacity;
     return ILSA_OK;
 }
 
 /* The survey cells as the last step left them. */
-static ilsa_status find_seeds(ilsa_solver *s) {
+static ilsa_status find_survey(ilsa_solver *s) {
     box part = ilsai_box_fold(&s->g, &s->now.footprint);
-    s->seed_count = 0;
+    s->survey_count = 0;
     for (int j = part.y0; j <= part.y1; j++) {
         for (int i = part.x0; i <= part.x1; i++) {
             int cell = ilsai_grid_cell(&s->g, i, j);
             if (s->field.kind[cell] != ILSA_CELL_SURVEY) {
                 continue;
             }
-            if (reserve_seeds(s, s->seed_count + 1) != ILSA_OK) {
+            if (reserve_survey(s, s->survey_count + 1) != ILSA_OK) {
                 return ILSA_ERR_MEMORY;
             }
-            front_seed seed = {.cell = cell, .s0 = -s->field.level[cell]};
-            seed.h = ilsai_survey_size(s, &s->g, i, j);
-            seed.V = s->field.speed[cell];
-            seed.w = s->field.width[cell];
-            s->seeds[s->seed_count++] = seed;
+            survey_cell survey = {.cell = cell, .s0 = -s->field.level[cell]};
+            survey.h = ilsai_survey_size(s, &s->g, i, j);
+            survey.V = s->field.speed[cell];
+            survey.w = s->field.width[cell];
+            s->survey_cells[s->survey_count++] = survey;
         }
     }
     return ILSA_OK;
@@ -71,19 +71,19 @@ static void copy_fields(const ilsa_solver *s, const box *b, fields *to, const fi
 }
 
 /* A loop over the survey cells of a step of dt. */
-typedef struct seed_loop {
+typedef struct survey_loop {
     ilsa_solver *s;
     double dt;
-} seed_loop;
+} survey_loop;
 
-static void share_seeds(team_function *function, ilsa_solver *s, double dt) {
-    seed_loop l = {s, dt};
-    ilsai_team_run(s->threads, function, &l, s->seed_count, ILSAI_SHARE_FRONT);
+static void share_survey(pool_function *function, ilsa_solver *s, double dt) {
+    survey_loop l = {s, dt};
+    ilsai_thread_pool_run(s->threads, function, &l, s->survey_count, ILSAI_SHARE_FRONT);
 }
 
 static void set_shapes(void *context, int first, int end) {
-    ilsa_solver *s = ((const seed_loop *)context)->s;
-    ilsai_shape_set(s, s->seeds + first, end - first);
+    ilsa_solver *s = ((const survey_loop *)context)->s;
+    ilsai_geometry_set(s, s->survey_cells + first, end - first);
 }
 
 static ilsa_status begin(ilsa_solver *s, double dt) {
@@ -91,17 +91,18 @@ static ilsa_status begin(ilsa_solver *s, double dt) {
     s->region = ilsai_solver_region(s, &s->now.footprint);
     copy_fields(s, &s->region, &s->trial, &s->field);
     s->trial_tips.count = 0;
-    if (find_seeds(s) != ILSA_OK || ilsai_anderson_begin(s->mixer, s->seed_count) != ILSA_OK) {
+    if (find_survey(s) != ILSA_OK ||
+        ilsai_anderson_begin(s->acceleration, s->survey_count) != ILSA_OK) {
         return ILSA_ERR_MEMORY;
     }
-    share_seeds(set_shapes, s, dt);
-    return ilsai_rim_begin(s, dt);
+    share_survey(set_shapes, s, dt);
+    return ilsai_tip_cells_begin(s, dt);
 }
 
 /* Distances within what the step allows: never back, no further than a step may go. */
-static double bounded(const front_seed *seed, double distance) {
-    double limit = seed->s0 + ILSAI_ADVANCE_MAX * seed->h;
-    distance = distance > seed->s0 ? distance : seed->s0;
+static double bounded(const survey_cell *survey, double distance) {
+    double limit = survey->s0 + ILSAI_ADVANCE_MAX * survey->h;
+    distance = distance > survey->s0 ? distance : survey->s0;
     return distance < limit ? distance : limit;
 }
 
@@ -109,61 +110,62 @@ static int is_nested(const ilsa_solver *s) {
     return s->def.loop == ILSA_LOOP_NESTED;
 }
 
-static int is_open(const ilsa_solver *s, const front_seed *seed) {
-    return s->contact[seed->cell] == CONTACT_OPEN;
+static int is_open(const ilsa_solver *s, const survey_cell *survey) {
+    return s->contact[survey->cell] == CONTACT_OPEN;
 }
 
 /*
  * How far a front may be predicted to go: the width that steps of the stress add on the way is
  * fluid that a barrier would take out of the cells behind it, until nothing were left of them.
  */
-static double before_barrier(const front_seed *seed, double distance) {
-    double low = seed->s0, high = distance;
-    front_seed at = *seed;
+static double before_barrier(const survey_cell *survey, double distance) {
+    double low = survey->s0, high = distance;
+    survey_cell at = *survey;
     at.s = low;
-    double most = ilsai_survey_jump_width(&at, low) + ILSAI_JUMP_PREDICTED * seed->w;
-    for (int k = 0; k < ILSAI_JUMP_BISECTIONS; k++) {
+    double most = ilsai_survey_step_width(&at, low) + ILSAI_STRESS_STEP_PREDICTED * survey->w;
+    for (int k = 0; k < ILSAI_STRESS_STEP_BISECTIONS; k++) {
         at.s = k > 0 ? 0.5 * (low + high) : high;
-        *(ilsai_survey_jump_width(&at, at.s) > most ? &high : &low) = at.s;
+        *(ilsai_survey_step_width(&at, at.s) > most ? &high : &low) = at.s;
     }
     return low;
 }
 
 /* The front moves on as it did in the last step. */
 static void predict(ilsa_solver *s, double dt) {
-    for (int k = 0; k < s->seed_count; k++) {
-        front_seed *seed = &s->seeds[k];
-        double advance = is_nested(s) || !is_open(s, seed) ? 0 : seed->V * dt;
-        double distance = bounded(seed, seed->s0 + advance);
-        s->distance[k] = seed->jumps > 0 ? before_barrier(seed, distance) : distance;
+    for (int k = 0; k < s->survey_count; k++) {
+        survey_cell *survey = &s->survey_cells[k];
+        double advance = is_nested(s) || !is_open(s, survey) ? 0 : survey->V * dt;
+        double distance = bounded(survey, survey->s0 + advance);
+        s->distance[k] = survey->step_count > 0 ? before_barrier(survey, distance) : distance;
     }
 }
 
-static void place_seeds(void *context, int first, int end) {
-    ilsa_solver *s = ((const seed_loop *)context)->s;
-    double dt = ((const seed_loop *)context)->dt;
+static void place_survey(void *context, int first, int end) {
+    ilsa_solver *s = ((const survey_loop *)context)->s;
+    double dt = ((const survey_loop *)context)->dt;
     for (int k = first; k < end; k++) {
-        front_seed *seed = &s->seeds[k];
-        seed->s = s->distance[k];
-        seed->V = (seed->s - seed->s0) / dt;
-        ilsai_survey_settle(s, seed);
-        seed->w = seed->V > 0 ? seed->asymptote : ilsai_survey_width(s, seed);
+        survey_cell *survey = &s->survey_cells[k];
+        survey->s = s->distance[k];
+        survey->V = (survey->s - survey->s0) / dt;
+        ilsai_survey_settle(s, survey);
+        survey->w = survey->V > 0 ? survey->w_asymptote : ilsai_survey_width(s, survey);
     }
 }
 
 /* Survey, tip and channel cells for the front where it is now. */
-static ilsa_status march(ilsa_solver *s, double dt, int hold) {
-    share_seeds(place_seeds, s, dt);
-    ilsa_status status = ilsai_front_march(s->march, &s->g, &s->region, s->field.kind, s->seeds,
-                                           s->seed_count, ilsai_solver_band(s), s->trial.level);
-    return status == ILSA_OK ? ilsai_rim_set(s, dt, hold) : status;
+static ilsa_status march_front(ilsa_solver *s, double dt, int hold) {
+    share_survey(place_survey, s, dt);
+    ilsa_status status =
+        ilsai_march_run(s->march, &s->g, &s->region, s->field.kind, s->survey_cells,
+                        s->survey_count, ilsai_solver_band(s), s->trial.level);
+    return status == ILSA_OK ? ilsai_tip_cells_update(s, dt, hold) : status;
 }
 
 /* Advance of the front in cells; a front at its bound has been held back by it. */
 static double advance(const ilsa_solver *s) {
     double largest = 0;
-    for (int k = 0; k < s->seed_count; k++) {
-        double cells = (s->seeds[k].s - s->seeds[k].s0) / s->seeds[k].h;
+    for (int k = 0; k < s->survey_count; k++) {
+        double cells = (s->survey_cells[k].s - s->survey_cells[k].s0) / s->survey_cells[k].h;
         largest = cells > largest ? cells : largest;
     }
     return largest;
@@ -181,39 +183,40 @@ static double tolerance_now(const ilsa_solver *s, int pass) {
 }
 
 static coupled_problem pose(ilsa_solver *s, double dt, double change) {
-    coupled_problem problem = {.g = &s->g,
-                               .e = s->elastic,
-                               .footprint = s->trial_footprint,
-                               .kind = s->trial.kind,
-                               .sigma = s->sigma,
-                               .width_old = s->field.width,
-                               .gain = s->gain,
-                               .edge = s->edge,
-                               .width = s->trial.width,
-                               .pressure = s->trial.pressure,
-                               .dt = dt,
-                               .mu_prime = s->material.mu_prime,
-                               .linear = s->def.linear,
-                               .contact = {ilsai_closure_width(s), s->contact, s->leak, s->relief},
-                               .response = s->responses,
-                               .response_count = s->response_count,
-                               .threads = s->threads};
+    coupled_problem problem = {
+        .g = &s->g,
+        .e = s->elastic,
+        .footprint = s->trial_footprint,
+        .kind = s->trial.kind,
+        .sigma = s->sigma,
+        .width_old = s->field.width,
+        .source_term = s->source_term,
+        .self_correction = s->self_correction,
+        .width = s->trial.width,
+        .pressure = s->trial.pressure,
+        .dt = dt,
+        .mu_prime = s->material.mu_prime,
+        .linear = s->def.linear,
+        .contact = {ilsai_closure_width(s), s->contact, s->leak, s->retained},
+        .sensitivity = s->sensitivities,
+        .sensitivity_count = s->sensitivity_count,
+        .threads = s->threads};
     double share = fmin(ILSAI_PASS_SHARE, ILSAI_PASS_SHARP * s->tolerance);
     double aim = is_nested(s) ? s->tolerance : fmax(share * change, tolerance_now(s, 0));
     problem.tolerance = ILSAI_WIDTH_TOLERANCE * fmin(aim, 0.1);
     return problem;
 }
 
-static void survey_seeds(void *context, int first, int end) {
-    ilsa_solver *s = ((const seed_loop *)context)->s;
-    double dt = ((const seed_loop *)context)->dt;
+static void invert_survey(void *context, int first, int end) {
+    ilsa_solver *s = ((const survey_loop *)context)->s;
+    double dt = ((const survey_loop *)context)->dt;
     for (int k = first; k < end; k++) {
-        front_seed *seed = &s->seeds[k];
-        if (is_open(s, seed)) {
-            s->next_distance[k] = bounded(seed, ilsai_survey_distance(s, seed, dt));
+        survey_cell *survey = &s->survey_cells[k];
+        if (is_open(s, survey)) {
+            s->next_distance[k] = bounded(survey, ilsai_survey_distance(s, survey, dt));
         } else {
-            s->next_distance[k] = seed->s0;
-            seed->ds_dw = seed->ds_inner = 0;
+            s->next_distance[k] = survey->s0;
+            survey->ds_dw = survey->ds_inner = 0;
         }
     }
 }
@@ -222,9 +225,9 @@ static void survey_seeds(void *context, int first, int end) {
  * to where it is, in cells. */
 static double survey(ilsa_solver *s, double dt) {
     double largest = 0;
-    share_seeds(survey_seeds, s, dt);
-    for (int k = 0; k < s->seed_count; k++) {
-        double change = fabs(s->next_distance[k] - s->distance[k]) / s->seeds[k].h;
+    share_survey(invert_survey, s, dt);
+    for (int k = 0; k < s->survey_count; k++) {
+        double change = fabs(s->next_distance[k] - s->distance[k]) / s->survey_cells[k].h;
         largest = change > largest || isnan(change) ? change : largest;
     }
     return largest;
@@ -235,20 +238,20 @@ static double survey(ilsa_solver *s, double dt) {
  * already foreseen the front's move; afterwards the iteration is a fixed point to be accelerated.
  */
 static void move_front(ilsa_solver *s, int pass) {
-    if (is_nested(s) || pass + 1 < ILSAI_RESPONSE_PASSES) {
-        memcpy(s->distance, s->next_distance, (size_t)s->seed_count * sizeof *s->distance);
+    if (is_nested(s) || pass + 1 < ILSAI_SENSITIVITY_PASSES) {
+        memcpy(s->distance, s->next_distance, (size_t)s->survey_count * sizeof *s->distance);
         return;
     }
-    ilsai_anderson_next(s->mixer, s->next_distance, s->distance);
-    for (int k = 0; k < s->seed_count; k++) {
-        s->distance[k] = bounded(&s->seeds[k], s->distance[k]);
+    ilsai_anderson_next(s->acceleration, s->next_distance, s->distance);
+    for (int k = 0; k < s->survey_count; k++) {
+        s->distance[k] = bounded(&s->survey_cells[k], s->distance[k]);
     }
 }
 
 /* Per area in the step: nothing comes back, whatever a late solve has let go, see contact.h. */
 static double leaked_from(const ilsa_solver *s, int cell) {
-    double relief = s->relief ? s->relief[cell] : 0;
-    return s->leak[cell] - fmax(fmin(relief, s->leak[cell]), 0);
+    double retained = s->retained ? s->retained[cell] : 0;
+    return s->leak[cell] - fmax(fmin(retained, s->leak[cell]), 0);
 }
 
 typedef struct volumes {
@@ -287,15 +290,15 @@ static int leaks_fast(const ilsa_solver *s) {
 /* The front where it is now: cells, tip widths, leak-off; and how they answer to the widths. */
 static ilsa_status set_front(ilsa_solver *s, double dt, int pass) {
     double start = ilsai_clock();
-    ilsa_status status = march(s, dt, pass >= ILSAI_HOLD_PASS);
+    ilsa_status status = march_front(s, dt, pass >= ILSAI_HOLD_PASS);
     int answers = pass > 0;
-    s->response_count = 0;
+    s->sensitivity_count = 0;
     if (status == ILSA_OK && pass == 0 && leaks_fast(s)) {
         survey(s, dt); /* for the derivatives */
         answers = 1;
     }
-    if (status == ILSA_OK && answers && !is_nested(s) && pass < ILSAI_RESPONSE_PASSES) {
-        ilsai_rim_respond(s, dt);
+    if (status == ILSA_OK && answers && !is_nested(s) && pass < ILSAI_SENSITIVITY_PASSES) {
+        ilsai_tip_cells_sensitivities(s, dt);
     }
     s->profile.front += ilsai_clock() - start;
     return status;
@@ -313,7 +316,7 @@ static ilsa_status iterate(ilsa_solver *s, double dt, coupled_counts *counts, il
         report->front_iterations++;
         ilsa_status status = set_front(s, dt, pass);
         coupled_problem problem = pose(s, dt, *change);
-        status = status ? status : ilsai_coupled_solve(s->flow, &problem, counts);
+        status = status ? status : ilsai_coupled_solve(s->coupled, &problem, counts);
         if (status != ILSA_OK) {
             return status;
         }
@@ -325,7 +328,7 @@ static ilsa_status iterate(ilsa_solver *s, double dt, coupled_counts *counts, il
         }
         int sharp = problem.tolerance <= s->tolerance; /* not the first guess of a front at rest */
         if (sharp && *change <= tolerance_now(s, pass)) {
-            ilsai_coupled_pressure(s->flow, &problem, counts);
+            ilsai_coupled_pressure(s->coupled, &problem, counts);
             return ILSA_OK;
         }
         move_front(s, pass);
@@ -385,7 +388,7 @@ void ilsai_step_classify(const grid *g, const box *part, unsigned char *kind) {
 /* Trigger times of the cells whose centres the front has passed in the step. */
 static void set_triggers(ilsa_solver *s, double dt) {
     int count;
-    const front_cell *cells = ilsai_front_cells(s->march, &count);
+    const front_cell *cells = ilsai_march_cells(s->march, &count);
     for (int k = 0; k < count; k++) {
         double *trigger = &s->field.trigger[cells[k].cell];
         if (cells[k].T <= 0 && !isfinite(*trigger)) {
@@ -408,7 +411,7 @@ static void add_leaked(ilsa_solver *s) {
 /* How unevenly in time the front has passed the cells that it has filled in the step. */
 static void set_spreads(ilsa_solver *s, double dt) {
     int count;
-    const front_cell *cells = ilsai_front_cells(s->march, &count);
+    const front_cell *cells = ilsai_march_cells(s->march, &count);
     for (int k = 0, r = 0; k < count && r < s->trial_tips.count; k++) {
         const front_cell *c = &cells[k];
         if (s->trial_tips.at[r].cell != c->cell) {
@@ -416,11 +419,11 @@ static void set_spreads(ilsa_solver *s, double dt) {
         }
         const tip_record *record = &s->trial_tips.at[r++];
         if (s->trial.kind[c->cell] != ILSA_CELL_TIP) {
-            tipcell_front at = {c->ell, c->cos_a, c->sin_a, s->g.dx, s->g.dy};
-            double over = c->ell - ilsai_front_full(&s->g, c->cos_a, c->sin_a);
+            tip_cell_front at = {c->ell, c->cos_a, c->sin_a, s->g.dx, s->g.dy};
+            double over = c->ell - ilsai_march_full(&s->g, c->cos_a, c->sin_a);
             double since = c->V > 0 ? fmin(fmax(over, 0) / c->V, dt) : 0;
             double filled = s->now.time + dt - since;
-            double spread = ilsai_tipcell_spread(&at, filled - record->history.t[0]);
+            double spread = ilsai_tip_cell_spread(&at, filled - record->history.t[0]);
             double age = filled - s->field.trigger[c->cell];
             s->field.spread[c->cell] = fmax(fmin(spread, age), 0);
         }
@@ -451,7 +454,7 @@ static void keep_tips(ilsa_solver *s) {
     }
     s->trial_tips.count = kept;
     unfold_tips(s, &s->trial_tips);
-    ilsai_tip_records_sort(&s->trial_tips);
+    ilsai_asymptote_records_sort(&s->trial_tips);
     s->tips = s->trial_tips;
     s->trial_tips = old;
 }
@@ -493,8 +496,8 @@ static void clear_dry(ilsa_solver *s, const box *part) {
 static void accept(ilsa_solver *s, double dt, double change) {
     box part = ilsai_box_fold(&s->g, &s->region);
     clear_dry(s, &part);
-    for (int k = 0; k < s->seed_count; k++) {
-        s->trial.speed[s->seeds[k].cell] = s->seeds[k].V;
+    for (int k = 0; k < s->survey_count; k++) {
+        s->trial.speed[s->survey_cells[k].cell] = s->survey_cells[k].V;
     }
     ilsai_step_classify(&s->g, &part, s->trial.kind);
     if (ilsai_has_leakoff(s)) {
@@ -508,7 +511,7 @@ static void accept(ilsa_solver *s, double dt, double change) {
     s->now.footprint = s->trial_footprint;
     s->now.mirror_x = s->now.mirror_x && s->g.mirror_x;
     s->now.mirror_y = s->now.mirror_y && s->g.mirror_y;
-    s->now.unknowns = ilsai_coupled_unknowns(s->flow);
+    s->now.unknowns = ilsai_coupled_unknowns(s->coupled);
     s->now.front_advance = advance(s);
     s->now.front_change = change;
     s->now.dt = dt;

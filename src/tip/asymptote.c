@@ -256,7 +256,7 @@ static inline bool is_plain(double x) {
     return x >= 1e-30 && x <= 1e30;
 }
 
-static inline bool is_plain_law(const tip_law *law) {
+static inline bool is_plain_law(const ilsa_material_def *law) {
     return is_plain(law->E_prime) && (is_plain(law->mu_prime) || law->mu_prime == 0.0) &&
            (is_plain(law->K_prime) || law->K_prime == 0.0) &&
            (is_plain(law->C_prime) || law->C_prime == 0.0);
@@ -320,7 +320,7 @@ static int larger_exponent(int e, wide a, int power) {
 }
 
 /* The width for any arguments, in units near the largest vertex width (3.3). */
-static double width_beyond(const tip_law *law, double V, double s) {
+static double width_beyond(const ilsa_material_def *law, double V, double s) {
     const wide E = widen(law->E_prime), s_wide = widen(s), root = root_of(s_wide);
     const wide w_k = times(over(widen(law->K_prime), E), root);
     if (V <= 0.0 || law->mu_prime == 0.0)
@@ -339,13 +339,13 @@ static double width_beyond(const tip_law *law, double V, double s) {
     return ldexp(width_solve(&p), unit);
 }
 
-static width_problem plain_problem(const tip_law *law, double V, double s) {
+static width_problem plain_problem(const ilsa_material_def *law, double V, double s) {
     const double root = sqrt(s);
     return (width_problem){law->K_prime / law->E_prime * root, 2.0 * law->C_prime * root / sqrt(V),
                            law->mu_prime / law->E_prime * V * s * s};
 }
 
-double ilsai_tip_width(const tip_law *law, double V, double s) {
+double ilsai_asymptote_width(const ilsa_material_def *law, double V, double s) {
     if (!is_plain_law(law) || !is_plain(s) || !(is_plain(V) || V == 0.0))
         return width_beyond(law, V, s);
     if (V == 0.0 || law->mu_prime == 0.0)
@@ -355,7 +355,7 @@ double ilsai_tip_width(const tip_law *law, double V, double s) {
 }
 
 /* K_hat and C_hat of (3.10) for V > 0; a width below the range counts as its smallest. */
-static void scaled_variables(const tip_law *law, double V, double s, double w, double *K,
+static void scaled_variables(const ilsa_material_def *law, double V, double s, double w, double *K,
                              double *C) {
     if (is_plain_law(law) && is_plain(V) && is_plain(s) && is_plain(w)) {
         const double root = sqrt(s) / w;
@@ -368,7 +368,8 @@ static void scaled_variables(const tip_law *law, double V, double s, double w, d
     *C = limited(times(over(shifted(law->C_prime, 1), root_of(widen(V))), root));
 }
 
-void ilsai_tip_moments(const tip_law *law, double V, double s, double w, double *M0, double *M1) {
+void ilsai_asymptote_moments(const ilsa_material_def *law, double V, double s, double w, double *M0,
+                             double *M1) {
     double delta[2] = {0.0, 0.0};
     if (V > 0.0 && law->mu_prime > 0.0) {
         double K, C;
@@ -388,15 +389,15 @@ static double velocity_exponent(double K, double C) {
 }
 
 /* A width with what (3.18) and the exponent need; next is d ln(w - w_k) / d ln s. */
-static tip_point point_at(double K, double C, double s, double w, double *next) {
+static asymptote_point point_at(double K, double C, double s, double w, double *next) {
     double delta[2];
     delta_p(K, C, (double[]){0.0, MOMENT_P0}, delta);
     *next = K < 1.0 ? 0.5 + 0.5 * delta[0] / (1.0 - K) : 1.0;
-    return (tip_point){
+    return (asymptote_point){
         .w = w, .M0 = 2.0 * w * s / (3.0 + delta[1]), .exponent = 0.5 * (1.0 + delta[0])};
 }
 
-static bool is_plain_row(const tip_law *law, double V, int count, const double *s) {
+static bool is_plain_row(const ilsa_material_def *law, double V, int count, const double *s) {
     bool plain = V > 0.0 && is_plain_law(law) && law->mu_prime > 0.0 && is_plain(V);
     for (int k = 0; k < count; k++)
         plain = plain && is_plain(s[k]);
@@ -404,42 +405,45 @@ static bool is_plain_row(const tip_law *law, double V, int count, const double *
 }
 
 /* One point of a row of any arguments; next as in point_at. */
-static tip_point point_alone(const tip_law *law, double V, double s, double *next) {
-    const double w = ilsai_tip_width(law, V, s);
+static asymptote_point point_alone(const ilsa_material_def *law, double V, double s, double *next) {
+    const double w = ilsai_asymptote_width(law, V, s);
     *next = 1.0;
     if (!(V > 0.0 && law->mu_prime > 0.0))
-        return (tip_point){w, 2.0 / 3.0 * w * s, 0.5, 0.0};
+        return (asymptote_point){w, 2.0 / 3.0 * w * s, 0.5, 0.0};
     double K, C;
     scaled_variables(law, V, s, w, &K, &C);
-    tip_point point = point_at(K, C, s, w, next);
+    asymptote_point point = point_at(K, C, s, w, next);
     point.by_V = velocity_exponent(K, C);
     return point;
 }
 
 /* The point before, taken on to the distance s, where the width is w. */
-static tip_point taken_on(const tip_point *before, double s_before, double s, double w) {
-    tip_point point = *before;
+static asymptote_point taken_on(const asymptote_point *before, double s_before, double s,
+                                double w) {
+    asymptote_point point = *before;
     point.M0 *= w * s / (before->w * s_before);
     point.w = w;
     return point;
 }
 
 /* A row of any arguments: as the others, but for widths found alone. */
-static void any_row(const tip_law *law, double V, int count, const double *s, tip_point *point) {
+static void any_row(const ilsa_material_def *law, double V, int count, const double *s,
+                    asymptote_point *point) {
     double exponent = 1.0;
     for (int k = 0; k < count; k++) {
         if (V > 0.0 && s[k] < ROW_NEAR * s[0]) {
-            const double e = point[k - 1].w - ilsai_tip_width(law, 0.0, s[k - 1]);
+            const double e = point[k - 1].w - ilsai_asymptote_width(law, 0.0, s[k - 1]);
             const double more = e * pow(s[k] / s[k - 1], exponent);
-            point[k] =
-                taken_on(&point[k - 1], s[k - 1], s[k], ilsai_tip_width(law, 0.0, s[k]) + more);
+            point[k] = taken_on(&point[k - 1], s[k - 1], s[k],
+                                ilsai_asymptote_width(law, 0.0, s[k]) + more);
         } else {
             point[k] = point_alone(law, V, s[k], &exponent);
         }
     }
 }
 
-void ilsai_tip_row(const tip_law *law, double V, int count, const double *s, tip_point *point) {
+void ilsai_asymptote_row(const ilsa_material_def *law, double V, int count, const double *s,
+                         asymptote_point *point) {
     if (!is_plain_row(law, V, count, s)) {
         any_row(law, V, count, s, point);
         return;
@@ -460,7 +464,7 @@ void ilsai_tip_row(const tip_law *law, double V, int count, const double *s, tip
     }
 }
 
-double ilsai_tip_exponent(const tip_law *law, double V, double s, double w) {
+double ilsai_asymptote_exponent(const ilsa_material_def *law, double V, double s, double w) {
     double delta[2] = {0.0, 0.0};
     if (V > 0.0) {
         double K, C;
@@ -510,7 +514,7 @@ static double distance_start(const distance_problem *p) {
 }
 
 /* K0, C0 and m0 for any arguments; false where K0 >= 1. */
-static bool distance_beyond(distance_problem *p, const tip_law *law, double w, double s0,
+static bool distance_beyond(distance_problem *p, const ilsa_material_def *law, double w, double s0,
                             double dt) {
     const wide w_wide = widen(w), r = over(widen(s0), w_wide), E = widen(law->E_prime);
     const wide K0 = over(times(over(widen(law->K_prime), E), root_of(widen(s0))), w_wide);
@@ -524,7 +528,7 @@ static bool distance_beyond(distance_problem *p, const tip_law *law, double w, d
     return p->K0 < 1.0;
 }
 
-static bool distance_plain(distance_problem *p, const tip_law *law, double w, double s0,
+static bool distance_plain(distance_problem *p, const ilsa_material_def *law, double w, double s0,
                            double dt) {
     const double r = s0 / w;
     p->K0 = law->K_prime / law->E_prime * sqrt(s0) / w;
@@ -534,7 +538,8 @@ static bool distance_plain(distance_problem *p, const tip_law *law, double w, do
 }
 
 /* (4.9) by toughness alone, whatever the velocity: w = K' s^(1/2) / E'. */
-static tip_front distance_of_toughness(const tip_law *law, double w, double s0, double dt) {
+static asymptote_front distance_of_toughness(const ilsa_material_def *law, double w, double s0,
+                                             double dt) {
     double s;
     if (is_plain_law(law) && is_plain(w)) {
         const double root = law->E_prime * w / law->K_prime;
@@ -544,8 +549,8 @@ static tip_front distance_of_toughness(const tip_law *law, double w, double s0, 
         s = narrow(times(root, root), 0);
     }
     if (!(s > s0))
-        return (tip_front){s0, 0.0, 0.0};
-    return (tip_front){s, (s - s0) / dt, limited(over(shifted(s, 1), widen(w)))};
+        return (asymptote_front){s0, 0.0, 0.0};
+    return (asymptote_front){s, (s - s0) / dt, limited(over(shifted(s, 1), widen(w)))};
 }
 
 /* From a distance that may be near the one sought, if it lies where one can be. */
@@ -554,32 +559,34 @@ static double distance_guess(const distance_problem *p, double xi) {
     return inverse > 0.0 ? 1.0 / inverse : distance_start(p);
 }
 
-tip_front ilsai_tip_distance(const tip_law *law, double w, double s0, double dt) {
-    return ilsai_tip_distance_near(law, w, s0, dt, s0);
+asymptote_front ilsai_asymptote_distance(const ilsa_material_def *law, double w, double s0,
+                                         double dt) {
+    return ilsai_asymptote_distance_near(law, w, s0, dt, s0);
 }
 
-tip_front ilsai_tip_distance_near(const tip_law *law, double w, double s0, double dt, double near) {
+asymptote_front ilsai_asymptote_distance_near(const ilsa_material_def *law, double w, double s0,
+                                              double dt, double near) {
     distance_problem p;
     if (law->mu_prime == 0.0)
         return distance_of_toughness(law, w, s0, dt);
     const bool plain = is_plain_law(law) && is_plain(w) && is_plain(s0) && is_plain(dt);
     if (!(plain ? distance_plain(&p, law, w, s0, dt) : distance_beyond(&p, law, w, s0, dt)))
-        return (tip_front){s0, 0.0, 0.0};
+        return (asymptote_front){s0, 0.0, 0.0};
     p.gap = (1.0 - p.K0) * (1.0 + p.K0);
     p.xi_rate = p.K0 * p.K0 / p.gap;
     tip_residual last = {0};
     const double x =
         solve(distance_residual, &p, distance_guess(&p, (near - s0) / s0), LAST_STEP, &last);
     if (x <= X_LEAST) /* beyond the double range, both ways */
-        return (tip_front){s0, 0.0, 0.0};
+        return (asymptote_front){s0, 0.0, 0.0};
     if (x >= X_MOST && p.xi_rate < 1e-200)
-        return (tip_front){HUGE_VAL, HUGE_VAL, 0.0};
+        return (asymptote_front){HUGE_VAL, HUGE_VAL, 0.0};
     const double per_xi = 1.0 / x + p.xi_rate, v = s0 / per_xi;
     if (plain)
-        return (tip_front){s0 + v, v / dt, last.v_by_w * v / w};
+        return (asymptote_front){s0 + v, v / dt, last.v_by_w * v / w};
     const wide far = over(widen(s0), widen(per_xi)); /* v, which may be too small */
-    return (tip_front){s0 + v, narrow(over(far, widen(dt)), 0),
-                       limited(times(widen(last.v_by_w), over(far, widen(w))))};
+    return (asymptote_front){s0 + v, narrow(over(far, widen(dt)), 0),
+                             limited(times(widen(last.v_by_w), over(far, widen(w))))};
 }
 
 static bool is_positive(double x) {
@@ -590,14 +597,14 @@ static bool is_not_negative(double x) {
     return x >= 0.0 && x <= DBL_MAX;
 }
 
-static bool is_law(const tip_law *law) {
+static bool is_law(const ilsa_material_def *law) {
     const bool ruled = is_positive(law->mu_prime) || (law->mu_prime == 0.0 && law->K_prime > 0.0);
     return is_positive(law->E_prime) && ruled && is_not_negative(law->K_prime) &&
            is_not_negative(law->C_prime);
 }
 
 /* A width that ilsa_tip_width can give: zero is one without toughness and at rest. */
-static bool is_width(const tip_law *law, double V, double w) {
+static bool is_width(const ilsa_material_def *law, double V, double w) {
     return is_positive(w) || (w == 0.0 && V == 0.0 && law->K_prime == 0.0);
 }
 
@@ -620,7 +627,7 @@ ilsa_status ilsa_tip_width(const ilsa_material_def *scaled, double V, double s, 
         return ILSA_ERR_NULL;
     if (!is_law(scaled) || !is_not_negative(V) || !is_positive(s))
         return ILSA_ERR_VALUE;
-    const double width = ilsai_tip_width(scaled, V, s);
+    const double width = ilsai_asymptote_width(scaled, V, s);
     if (!is_not_negative(width)) /* beyond the double range */
         return ILSA_ERR_VALUE;
     *w = width;
@@ -634,7 +641,7 @@ ilsa_status ilsa_tip_moments(const ilsa_material_def *scaled, double V, double s
     if (!is_law(scaled) || !is_not_negative(V) || !is_positive(s) || !is_width(scaled, V, w))
         return ILSA_ERR_VALUE;
     double zeroth, first;
-    ilsai_tip_moments(scaled, V, s, w, &zeroth, &first);
+    ilsai_asymptote_moments(scaled, V, s, w, &zeroth, &first);
     if (!is_not_negative(zeroth) || !is_not_negative(first))
         return ILSA_ERR_VALUE;
     *M0 = zeroth;
@@ -648,7 +655,7 @@ ilsa_status ilsa_tip_distance(const ilsa_material_def *scaled, double w, double 
         return ILSA_ERR_NULL;
     if (!is_law(scaled) || !is_positive(w) || !is_positive(s0) || !is_positive(dt))
         return ILSA_ERR_VALUE;
-    const tip_front front = ilsai_tip_distance(scaled, w, s0, dt);
+    const asymptote_front front = ilsai_asymptote_distance(scaled, w, s0, dt);
     if (!is_positive(front.s) || !is_not_negative(front.V))
         return ILSA_ERR_VALUE;
     *s = front.s;
@@ -663,7 +670,7 @@ static double log_or_minus_infinity(double x) {
 }
 
 /* Logarithms of the vertex widths (3.3) over w. */
-static void vertex_ratios(const tip_law *law, double V, double s, double w,
+static void vertex_ratios(const ilsa_material_def *law, double V, double s, double w,
                           double ratio[VERTICES]) {
     const double log_w = log(w), log_s = log(s), log_E = log(law->E_prime);
     const double log_V = log(V), log_mu = log_or_minus_infinity(law->mu_prime);

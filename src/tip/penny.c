@@ -27,7 +27,7 @@
 #define PI 3.14159265358979323846
 
 enum {
-    NODES = ILSAI_RADIAL_NODES,
+    NODES = ILSAI_PENNY_NODES,
     LAST = NODES - 1, /* the node next to the tip; node 0 is the source */
     GAUSS = 3,        /* points a panel between nodes */
     INNER = GAUSS * LAST,
@@ -184,7 +184,7 @@ static void set_up_grid(radial_grid *grid) {
 
 /* When the front passed the radius, both as logarithms: cubic between the times, power law before.
  */
-static double log_arrival(const radial_history *history, double log_radius) {
+static double log_arrival(const penny_history *history, double log_radius) {
     const double *x = history->log_radius, *y = history->log_time, *alpha = history->alpha;
     int k = history->count - 1;
     while (k > 0 && log_radius < x[k - 1]) {
@@ -201,8 +201,8 @@ static double log_arrival(const radial_history *history, double log_radius) {
 /* What is known while stepping; history holds the accepted times and, last, the present trial. */
 typedef struct march {
     const radial_grid *grid;
-    tip_law law; /* in the units above */
-    radial_history history;
+    ilsa_material_def law; /* in the units above */
+    penny_history history;
     double log_width[NODES];
     double f[NODES], m;       /* the pressure gradient, and the stress intensity at the tip */
     double growth[NODES];     /* d ln(volume outside the node) / d ln t at constant rho */
@@ -226,7 +226,7 @@ static void leak_off(radial_march *march) {
     if (march->law.C_prime == 0.0) {
         return;
     }
-    const radial_history *history = &march->history;
+    const penny_history *history = &march->history;
     int now = history->count - 1;
     double x = history->log_radius[now], radius = exp(x), time = exp(history->log_time[now]);
     double tip = march->grid->s[LAST], alpha = history->alpha[now];
@@ -303,8 +303,8 @@ static int solve_widths(radial_march *march, double tolerance) {
     int now = march->history.count - 1;
     double radius = exp(march->history.log_radius[now]), time = exp(march->history.log_time[now]);
     double V = march->history.alpha[now] * radius / time, s = radius * march->grid->s[LAST];
-    double tip_width = ilsai_tip_width(&march->law, V, s);
-    march->tip_power = log(tip_width / ilsai_tip_width(&march->law, V, 0.5 * s)) / log(2.0);
+    double tip_width = ilsai_asymptote_width(&march->law, V, s);
+    march->tip_power = log(tip_width / ilsai_asymptote_width(&march->law, V, 0.5 * s)) / log(2.0);
     for (int pass = 0; pass < 150; pass++) {
         double ratio[NODES], worst = 0.0;
         substitute(march, tip_width, ratio);
@@ -325,16 +325,16 @@ static double fracture_volume(const radial_march *march) {
 }
 
 /* The radii that viscosity, toughness and leak-off alone would allow: the vertex solutions. */
-static double log_radius_of_viscosity(const tip_law *law, double log_time) {
+static double log_radius_of_viscosity(const ilsa_material_def *law, double log_time) {
     return log(VISCOSITY_RADIUS) + (4.0 * log_time - log(law->mu_prime)) / 9.0;
 }
 
-static double log_radius_of_toughness(const tip_law *law, double log_time) {
+static double log_radius_of_toughness(const ilsa_material_def *law, double log_time) {
     return law->K_prime > 0.0 ? log(TOUGHNESS_RADIUS) + 0.4 * (log_time - log(law->K_prime))
                               : HUGE_VAL;
 }
 
-static double log_radius_of_leak_off(const tip_law *law, double log_time) {
+static double log_radius_of_leak_off(const ilsa_material_def *law, double log_time) {
     return law->C_prime > 0.0 ? log(LEAK_OFF_RADIUS) + 0.25 * log_time - 0.5 * log(law->C_prime)
                               : HUGE_VAL;
 }
@@ -375,7 +375,7 @@ static double update_growth(radial_march *march) {
 }
 
 static void set_radius(radial_march *march, double log_radius) {
-    radial_history *history = &march->history;
+    penny_history *history = &march->history;
     int now = history->count - 1;
     history->log_radius[now] = log_radius;
     if (now > 0) {
@@ -425,7 +425,7 @@ static int start_march(radial_march *march, double log_time) {
     double V = march->history.alpha[0] * exp(x - log_time);
     for (int i = 0; i < NODES; i++) {
         double s = exp(x) * march->grid->s[i];
-        march->log_width[i] = log(ilsai_tip_width(&march->law, V, s));
+        march->log_width[i] = log(ilsai_asymptote_width(&march->law, V, s));
         march->growth[i] = 1.0;
     }
     return solve_radius(march, x);
@@ -443,10 +443,10 @@ static int step_march(radial_march *march) {
 }
 
 /* Fills the solution, in the units of the caller, from the end of the march. */
-static void finish(const radial_march *march, radial_solution *solution) {
+static void finish(const radial_march *march, penny_solution *solution) {
     double length = cbrt(solution->Q * solution->t), E = solution->scaled.E_prime;
     int now = march->history.count - 1;
-    const radial_history *history = &march->history;
+    const penny_history *history = &march->history;
     solution->R = length * exp(history->log_radius[now]);
     solution->alpha = history->alpha[now];
     solution->V = solution->alpha * solution->R / solution->t;
@@ -467,8 +467,8 @@ static void finish(const radial_march *march, radial_solution *solution) {
     }
 }
 
-/* The volume of exactly the width that ilsai_radial_width interpolates. */
-static double profile_volume(const radial_solution *solution) {
+/* The volume of exactly the width that ilsai_penny_width interpolates. */
+static double profile_volume(const penny_solution *solution) {
     double sum = tip_volume(exp(solution->log_width[LAST]), exp(-DEPTH), solution->tip_power);
     for (int i = 0; i < LAST; i++) {
         for (int k = 0; k < ANGLES; k++) {
@@ -489,7 +489,7 @@ static int is_valid(const ilsa_material_def *scaled, double Q, double size) {
            scaled->C_prime >= 0.0 && is_positive(Q) && is_positive(size);
 }
 
-static ilsa_status solve_at_time(const radial_grid *grid, radial_solution *solution) {
+static ilsa_status solve_at_time(const radial_grid *grid, penny_solution *solution) {
     const ilsa_material_def *scaled = &solution->scaled;
     double t = solution->t, length = cbrt(solution->Q * t);
     if (!is_positive(scaled->E_prime * t) || !is_positive(scaled->E_prime * sqrt(length))) {
@@ -505,8 +505,8 @@ static ilsa_status solve_at_time(const radial_grid *grid, radial_solution *solut
     if (!is_valid(&march.law, solution->Q, length)) {
         return ILSA_ERR_VALUE;
     }
-    int solved = start_march(&march, -LOG_STEP * (ILSAI_RADIAL_TIMES - 1));
-    while (solved && march.history.count < ILSAI_RADIAL_TIMES) {
+    int solved = start_march(&march, -LOG_STEP * (ILSAI_PENNY_TIMES - 1));
+    while (solved && march.history.count < ILSAI_PENNY_TIMES) {
         solved = step_march(&march);
     }
     if (!solved) {
@@ -517,14 +517,14 @@ static ilsa_status solve_at_time(const radial_grid *grid, radial_solution *solut
     return ILSA_OK;
 }
 
-ilsa_status ilsai_radial_at_time(const ilsa_material_def *scaled, double Q, double t,
-                                 radial_solution *solution) {
+ilsa_status ilsai_penny_at_time(const ilsa_material_def *scaled, double Q, double t,
+                                penny_solution *solution) {
     if (!is_valid(scaled, Q, t)) {
         return ILSA_ERR_VALUE;
     }
     radial_grid grid;
     set_up_grid(&grid);
-    radial_solution trial = {.scaled = *scaled, .Q = Q, .t = t};
+    penny_solution trial = {.scaled = *scaled, .Q = Q, .t = t};
     ilsa_status status = solve_at_time(&grid, &trial);
     if (status == ILSA_OK) {
         *solution = trial;
@@ -545,20 +545,20 @@ static double log_time_bound(const ilsa_material_def *scaled, double Q, double R
     return x;
 }
 
-static void set_radius_exactly(radial_solution *solution, double R) {
+static void set_radius_exactly(penny_solution *solution, double R) {
     solution->R = R;
     solution->V = solution->alpha * R / solution->t;
     solution->efficiency = profile_volume(solution) / (solution->Q * solution->t);
 }
 
-ilsa_status ilsai_radial_at_radius(const ilsa_material_def *scaled, double Q, double R,
-                                   radial_solution *solution) {
+ilsa_status ilsai_penny_at_radius(const ilsa_material_def *scaled, double Q, double R,
+                                  penny_solution *solution) {
     if (!is_valid(scaled, Q, R)) {
         return ILSA_ERR_VALUE;
     }
     radial_grid grid;
     set_up_grid(&grid);
-    radial_solution trial = {.scaled = *scaled, .Q = Q};
+    penny_solution trial = {.scaled = *scaled, .Q = Q};
     double log_time = log_time_bound(scaled, Q, R), slope = 0.4, previous = 0.0, previous_x = 0.0;
     for (int pass = 0; pass < 60; pass++) {
         trial.t = exp(log_time);
@@ -581,7 +581,7 @@ ilsa_status ilsai_radial_at_radius(const ilsa_material_def *scaled, double Q, do
     return ILSA_ERR_VALUE;
 }
 
-double ilsai_radial_width(const radial_solution *solution, double rho) {
+double ilsai_penny_width(const penny_solution *solution, double rho) {
     if (!(rho < 1.0)) {
         return 0.0;
     }
@@ -595,7 +595,7 @@ double ilsai_radial_width(const radial_solution *solution, double rho) {
     return exp(interpolate(solution->log_width, node, weight));
 }
 
-double ilsai_radial_pressure(const radial_solution *solution, double rho) {
+double ilsai_penny_pressure(const penny_solution *solution, double rho) {
     double depth = -log1p(-fmax(rho, 0.0));
     /* ln(rho / s), in which the pressure is straight at the source, is ln(expm1(depth)) */
     double zeta = rho < 1.0 ? index_of_depth(depth) : LAST;
@@ -613,7 +613,7 @@ double ilsai_radial_pressure(const radial_solution *solution, double rho) {
            h * a * b * (a * slope[0] - b * slope[1]);
 }
 
-double ilsai_radial_arrival(const radial_solution *solution, double rho) {
+double ilsai_penny_arrival(const penny_solution *solution, double rho) {
     if (!(rho > 0.0)) {
         return 0.0;
     }

@@ -13,19 +13,19 @@
 #include <ilsa/material.h>
 
 enum {
-    ILSAI_RADIAL_NODES = 25, /* of the profiles, from the source to the tip */
-    ILSAI_RADIAL_TIMES = 8   /* of the history that is computed, the last is t */
+    ILSAI_PENNY_NODES = 25, /* of the profiles, from the source to the tip */
+    ILSAI_PENNY_TIMES = 8   /* of the history that is computed, the last is t */
 };
 
 /* The radius through time: ln(t/t_end) is piecewise cubic in ln(R/R_end), a power law at first. */
-typedef struct radial_history {
+typedef struct penny_history {
     int count;
-    double log_radius[ILSAI_RADIAL_TIMES];
-    double log_time[ILSAI_RADIAL_TIMES];
-    double alpha[ILSAI_RADIAL_TIMES]; /* d ln R / d ln t */
-} radial_history;
+    double log_radius[ILSAI_PENNY_TIMES];
+    double log_time[ILSAI_PENNY_TIMES];
+    double alpha[ILSAI_PENNY_TIMES]; /* d ln R / d ln t */
+} penny_history;
 
-typedef struct radial_solution {
+typedef struct penny_solution {
     ilsa_material_def scaled;
     double Q;          /* rate */
     double t;          /* time since the start of injection */
@@ -35,28 +35,28 @@ typedef struct radial_solution {
     double efficiency; /* volume in the fracture / (Q t) */
 
     /* Private to radial.c. */
-    double log_width[ILSAI_RADIAL_NODES];
-    double pressure[ILSAI_RADIAL_NODES];       /* from node 1 on */
-    double pressure_slope[ILSAI_RADIAL_NODES]; /* d p / d ln(rho / (1 - rho)) */
-    double tip_power;                          /* d ln w / d ln s at the outermost node */
-    radial_history history;
-} radial_solution;
+    double log_width[ILSAI_PENNY_NODES];
+    double pressure[ILSAI_PENNY_NODES];       /* from node 1 on */
+    double pressure_slope[ILSAI_PENNY_NODES]; /* d p / d ln(rho / (1 - rho)) */
+    double tip_power;                         /* d ln w / d ln s at the outermost node */
+    penny_history history;
+} penny_solution;
 
 /* The solution at a time t > 0. ILSA_ERR_VALUE if it cannot be found (parameters out of reach). */
-ilsa_status ilsai_radial_at_time(const ilsa_material_def *scaled, double Q, double t,
-                                 radial_solution *solution);
+ilsa_status ilsai_penny_at_time(const ilsa_material_def *scaled, double Q, double t,
+                                penny_solution *solution);
 
 /* The solution with radius R > 0. As above. */
-ilsa_status ilsai_radial_at_radius(const ilsa_material_def *scaled, double Q, double R,
-                                   radial_solution *solution);
+ilsa_status ilsai_penny_at_radius(const ilsa_material_def *scaled, double Q, double R,
+                                  penny_solution *solution);
 
 /* Width at r = rho R, 0 <= rho < 1; its volume is efficiency Q t. 0 for rho >= 1. */
-double ilsai_radial_width(const radial_solution *solution, double rho);
+double ilsai_penny_width(const penny_solution *solution, double rho);
 
 /* Net pressure p - sigma at rho; finite: constant below rho = 0.014 and above 0.9997. */
-double ilsai_radial_pressure(const radial_solution *solution, double rho);
+double ilsai_penny_pressure(const penny_solution *solution, double rho);
 
 /* When the front passed r = rho R: between 0 and t, 0 at rho = 0, t at rho = 1. */
-double ilsai_radial_arrival(const radial_solution *solution, double rho);
+double ilsai_penny_arrival(const penny_solution *solution, double rho);
 
 #endif

@@ -11,23 +11,23 @@ static double damped_logarithm(double u) {
 }
 
 /* In u = (s / d)^(1/2); the bracket and the integral's lose digits below this and are u^3, u^5. */
-#define JUMP_CLOSE 1e-3
+#define STRESS_STEP_CLOSE 1e-3
 
-double ilsai_jump_width(double s, double d) {
+double ilsai_stress_step_width(double s, double d) {
     if (!(s > 0 && d > 0)) {
         return 0;
     }
     double u = sqrt(s / d);
-    double bracket = u < JUMP_CLOSE ? 4.0 / 3 * u * u * u : 2 * u - damped_logarithm(u);
+    double bracket = u < STRESS_STEP_CLOSE ? 4.0 / 3 * u * u * u : 2 * u - damped_logarithm(u);
     return four_over_pi * d * bracket;
 }
 
-double ilsai_jump_moment(double s, double d) {
+double ilsai_stress_step_moment(double s, double d) {
     if (!(s > 0 && d > 0)) {
         return 0;
     }
     double u = sqrt(s / d), u3 = u * u * u;
-    double bracket = u < JUMP_CLOSE
+    double bracket = u < STRESS_STEP_CLOSE
                          ? 4.0 / 15 * u3 * u * u
                          : 0.25 * (1 - u) * (1 + u) * damped_logarithm(u) - 0.5 * u + 5.0 / 6 * u3;
     return 2 * four_over_pi * d * d * bracket;

@@ -13,13 +13,13 @@
 #define ILSAI_STRESS_STEP_H
 
 /* A step of the stress on the normal through a survey cell. */
-typedef struct stress_jump {
+typedef struct stress_step {
     double depth;  /* how much further from the front than the cell's centre; negative: nearer */
     double height; /* stress in front of it less that behind, over E' */
-} stress_jump;
+} stress_step;
 
 /* The width above and its integral over 0 .. s, for height 1; 0 where s <= 0 or d <= 0. */
-double ilsai_jump_width(double s, double d);
-double ilsai_jump_moment(double s, double d);
+double ilsai_stress_step_width(double s, double d);
+double ilsai_stress_step_moment(double s, double d);
 
 #endif

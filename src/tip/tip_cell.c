@@ -10,18 +10,18 @@
  * larger of dy sin(alpha) and dx cos(alpha). Volume and leak-off are integrals over s of a positive
  * quantity times this chord; no term is subtracted, and alpha = 0 and pi/2 are not special.
  */
-typedef struct tipcell_chord {
+typedef struct tip_cell_chord {
     double h, H, length;
-} tipcell_chord;
+} tip_cell_chord;
 
-static tipcell_chord chord_of(const tipcell_front *front) {
+static tip_cell_chord chord_of(const tip_cell_front *front) {
     const double a = front->dy * front->sin_a, b = front->dx * front->cos_a;
     const double H = fmax(a, b);
-    return (tipcell_chord){fmin(a, b), H, front->dx * front->dy / H};
+    return (tip_cell_chord){fmin(a, b), H, front->dx * front->dy / H};
 }
 
-double ilsai_tipcell_area(const tipcell_front *front) {
-    const tipcell_chord c = chord_of(front);
+double ilsai_tip_cell_area(const tip_cell_front *front) {
+    const tip_cell_chord c = chord_of(front);
     const double ell = front->ell, rest = c.H + c.h - ell;
     if (ell <= 0.0)
         return 0.0;
@@ -35,10 +35,10 @@ double ilsai_tipcell_area(const tipcell_front *front) {
 }
 
 /* Distances and weights of a sum over the wet part of the cell. */
-enum { TIPCELL_NODES = 8 };
+enum { TIP_CELL_NODES = 8 };
 typedef struct wet_nodes {
     int count;
-    double xi[TIPCELL_NODES], weight[TIPCELL_NODES];
+    double xi[TIP_CELL_NODES], weight[TIP_CELL_NODES];
 } wet_nodes;
 
 /*
@@ -67,8 +67,8 @@ static void add_strip(wet_nodes *n, double h, double far, double sign) {
 }
 
 /* The volume is the sum of M0 by these, its derivative by ell that of the width. */
-static wet_nodes nodes_of(const tipcell_front *front) {
-    const tipcell_chord c = chord_of(front);
+static wet_nodes nodes_of(const tip_cell_front *front) {
+    const tip_cell_chord c = chord_of(front);
     wet_nodes n = {0};
     if (front->ell > 0.0)
         add_strip(&n, c.h, front->ell, c.length);
@@ -78,22 +78,23 @@ static wet_nodes nodes_of(const tipcell_front *front) {
 }
 
 /* Width and M0 at the nodes; of a front at rest those of its K_I. */
-static void row_of(const tip_law *law, double V, double K_I, const wet_nodes *n, tip_point *point) {
+static void row_of(const ilsa_material_def *law, double V, double K_I, const wet_nodes *n,
+                   asymptote_point *point) {
     if (V > 0.0) {
-        ilsai_tip_row(law, V, n->count, n->xi, point);
+        ilsai_asymptote_row(law, V, n->count, n->xi, point);
         return;
     }
     for (int k = 0; k < n->count; k++) {
         const double w = K_I / law->E_prime * sqrt(n->xi[k]);
-        point[k] = (tip_point){w, 2.0 / 3.0 * w * n->xi[k], 0.5, 0.0};
+        point[k] = (asymptote_point){w, 2.0 / 3.0 * w * n->xi[k], 0.5, 0.0};
     }
 }
 
-tipcell_growth ilsai_tipcell_growth(const tip_law *law, double V, double K_I,
-                                    const tipcell_front *front) {
+tip_cell_growth ilsai_tip_cell_growth(const ilsa_material_def *law, double V, double K_I,
+                                      const tip_cell_front *front) {
     const wet_nodes n = nodes_of(front);
-    tip_point point[TIPCELL_NODES];
-    tipcell_growth sum = {0.0, 0.0, 0.0};
+    asymptote_point point[TIP_CELL_NODES];
+    tip_cell_growth sum = {0.0, 0.0, 0.0};
     row_of(law, V, K_I, &n, point);
     for (int k = 0; k < n.count; k++) {
         sum.volume += n.weight[k] * point[k].M0;
@@ -103,25 +104,26 @@ tipcell_growth ilsai_tipcell_growth(const tip_law *law, double V, double K_I,
     return sum;
 }
 
-double ilsai_tipcell_volume(const tip_law *law, double V, double K_I, const tipcell_front *front) {
-    return ilsai_tipcell_growth(law, V, K_I, front).volume;
+double ilsai_tip_cell_volume(const ilsa_material_def *law, double V, double K_I,
+                             const tip_cell_front *front) {
+    return ilsai_tip_cell_growth(law, V, K_I, front).volume;
 }
 
-tipcell_growth ilsai_tipcell_jump_growth(double d, const tipcell_front *front) {
+tip_cell_growth ilsai_tip_cell_step_growth(double d, const tip_cell_front *front) {
     const wet_nodes n = nodes_of(front);
-    tipcell_growth sum = {0.0, 0.0, 0.0};
+    tip_cell_growth sum = {0.0, 0.0, 0.0};
     for (int k = 0; k < n.count; k++) {
-        sum.volume += n.weight[k] * ilsai_jump_moment(n.xi[k], d);
-        sum.by_ell += n.weight[k] * ilsai_jump_width(n.xi[k], d);
+        sum.volume += n.weight[k] * ilsai_stress_step_moment(n.xi[k], d);
+        sum.by_ell += n.weight[k] * ilsai_stress_step_width(n.xi[k], d);
     }
     return sum;
 }
 
-double ilsai_tipcell_jump_volume(double d, const tipcell_front *front) {
-    return ilsai_tipcell_jump_growth(d, front).volume;
+double ilsai_tip_cell_step_volume(double d, const tip_cell_front *front) {
+    return ilsai_tip_cell_step_growth(d, front).volume;
 }
 
-void ilsai_tipcell_enter(tipcell_history *history, double t_A) {
+void ilsai_tip_cell_enter(tip_cell_history *history, double t_A) {
     history->count = 1;
     history->t[0] = t_A;
     history->ell[0] = 0.0;
@@ -137,7 +139,7 @@ static double knot_weight(const double t[3], const double ell[3]) {
  * straight on depends on the knot to come, which an iteration moves, and the choice must not move
  * with it.
  */
-static void history_drop(tipcell_history *history) {
+static void history_drop(tip_cell_history *history) {
     int least = 1;
     double least_weight = HUGE_VAL;
     for (int k = 1; k < history->count - 1; k++) {
@@ -154,15 +156,15 @@ static void history_drop(tipcell_history *history) {
     }
 }
 
-void ilsai_tipcell_amend(tipcell_history *history, double ell, double most) {
+void ilsai_tip_cell_amend(tip_cell_history *history, double ell, double most) {
     const int last = history->count - 1;
     if (last > 0)
         history->ell[last] = fmax(fmin(ell, most), history->ell[last - 1]);
 }
 
-void ilsai_tipcell_record(tipcell_history *history, double t, double ell) {
+void ilsai_tip_cell_record(tip_cell_history *history, double t, double ell) {
     ell = fmax(ell, history->ell[history->count - 1]);
-    if (history->count == TIPCELL_KNOTS)
+    if (history->count == TIP_CELL_KNOTS)
         history_drop(history);
     history->t[history->count] = t;
     history->ell[history->count] = ell;
@@ -184,14 +186,14 @@ static double leakoff_piece(double ds, double p, double q, double a, double b) {
 }
 
 /* Length of the chord at s on its rise (part 0), its middle (1) or its fall (2). */
-static double chord_at(const tipcell_chord *chord, int part, double s) {
+static double chord_at(const tip_cell_chord *chord, int part, double s) {
     if (part == 1)
         return chord->length;
     return chord->length * ((part == 0 ? s : chord->H + chord->h - s) / chord->h);
 }
 
 /* One segment of the path, along which age = t - t_0 falls linearly, cut at the corners. */
-static double leakoff_segment(const tipcell_chord *chord, const double s[2], const double age[2]) {
+static double leakoff_segment(const tip_cell_chord *chord, const double s[2], const double age[2]) {
     const double corner[3] = {chord->h, chord->H, chord->H + chord->h};
     double from = s[0], p = sqrt(age[0]), sum = 0.0;
     for (int part = 0; part < 3 && from < s[1]; part++) {
@@ -207,9 +209,9 @@ static double leakoff_segment(const tipcell_chord *chord, const double s[2], con
     return sum;
 }
 
-double ilsai_tipcell_leakoff_path(double C_prime, const tipcell_front *front, int count,
-                                  const double *t, const double *ell) {
-    const tipcell_chord chord = chord_of(front);
+double ilsai_tip_cell_leakoff_path(double C_prime, const tip_cell_front *front, int count,
+                                   const double *t, const double *ell) {
+    const tip_cell_chord chord = chord_of(front);
     double sum = 0.0;
     for (int k = 0; k + 1 < count; k++) {
         const double age[2] = {t[count - 1] - t[k], t[count - 1] - t[k + 1]};
@@ -218,34 +220,34 @@ double ilsai_tipcell_leakoff_path(double C_prime, const tipcell_front *front, in
     return 2.0 * C_prime * sum;
 }
 
-double ilsai_tipcell_leakoff(double C_prime, const tipcell_front *front,
-                             const tipcell_history *history) {
-    return ilsai_tipcell_leakoff_path(C_prime, front, history->count, history->t, history->ell);
+double ilsai_tip_cell_leakoff(double C_prime, const tip_cell_front *front,
+                              const tip_cell_history *history) {
+    return ilsai_tip_cell_leakoff_path(C_prime, front, history->count, history->t, history->ell);
 }
 
 /* One segment up to the last knot, or up to the time t on the way there. */
-static double constant_leakoff(double C_prime, const tipcell_front *front,
-                               const tipcell_history *history, double t) {
+static double constant_leakoff(double C_prime, const tip_cell_front *front,
+                               const tip_cell_history *history, double t) {
     const int last = history->count - 1;
     const double t0 = history->t[0], part = (t - t0) / (history->t[last] - t0);
-    return ilsai_tipcell_leakoff_path(C_prime, front, 2, (double[]){t0, t},
-                                      (double[]){0, part * history->ell[last]});
+    return ilsai_tip_cell_leakoff_path(C_prime, front, 2, (double[]){t0, t},
+                                       (double[]){0, part * history->ell[last]});
 }
 
-double ilsai_tipcell_leakoff_last(double C_prime, tipcell_velocity velocity,
-                                  const tipcell_front *front, const tipcell_history *history) {
+double ilsai_tip_cell_leakoff_last(double C_prime, tip_cell_velocity velocity,
+                                   const tip_cell_front *front, const tip_cell_history *history) {
     const int n = history->count;
     const double *t = history->t;
     if (n <= 2)
-        return ilsai_tipcell_leakoff(C_prime, front, history);
-    if (velocity == TIPCELL_CONSTANT)
+        return ilsai_tip_cell_leakoff(C_prime, front, history);
+    if (velocity == TIP_CELL_CONSTANT)
         return constant_leakoff(C_prime, front, history, t[n - 1]) -
                constant_leakoff(C_prime, front, history, t[n - 2]);
-    return ilsai_tipcell_leakoff(C_prime, front, history) -
-           ilsai_tipcell_leakoff_path(C_prime, front, n - 1, t, history->ell);
+    return ilsai_tip_cell_leakoff(C_prime, front, history) -
+           ilsai_tip_cell_leakoff_path(C_prime, front, n - 1, t, history->ell);
 }
 
-double ilsai_tipcell_full_leakoff(double C_prime, double age, double spread) {
+double ilsai_tip_cell_full_leakoff(double C_prime, double age, double spread) {
     const double oldest = fmax(age + spread, 0.0), newest = fmax(age - spread, 0.0);
     const double p = sqrt(oldest), q = sqrt(newest);
     const double wet = newest > 0.0 || spread <= 0.0 ? 1.0 : oldest / (2.0 * spread);
@@ -253,10 +255,10 @@ double ilsai_tipcell_full_leakoff(double C_prime, double age, double spread) {
 }
 
 /* With u = p + q of above the mean of the root is u / 2 + (2/3) e^2 / u^3. */
-double ilsai_tipcell_full_leakoff_step(double C_prime, double age, double dt, double spread) {
+double ilsai_tip_cell_full_leakoff_step(double C_prime, double age, double dt, double spread) {
     if (!(age > spread))
-        return ilsai_tipcell_full_leakoff(C_prime, age + dt, spread) -
-               ilsai_tipcell_full_leakoff(C_prime, age, spread);
+        return ilsai_tip_cell_full_leakoff(C_prime, age + dt, spread) -
+               ilsai_tip_cell_full_leakoff(C_prime, age, spread);
     const double p0 = sqrt(age + spread), p1 = sqrt(age + dt + spread);
     const double q0 = sqrt(age - spread), q1 = sqrt(age + dt - spread);
     const double u0 = p0 + q0, u1 = p1 + q1, e0 = spread / (u0 * u0), e1 = spread / (u1 * u1);
@@ -265,7 +267,7 @@ double ilsai_tipcell_full_leakoff_step(double C_prime, double age, double dt, do
     return C_prime * rise * (1.0 - less);
 }
 
-double ilsai_tipcell_spread(const tipcell_front *front, double T) {
+double ilsai_tip_cell_spread(const tip_cell_front *front, double T) {
     const double a = front->dx * front->cos_a, b = front->dy * front->sin_a;
     return 0.5 * T * hypot(a, b) / (a + b);
 }

@@ -83,7 +83,7 @@ static void check_fields(const ilsa_solver *s, const ilsa_summary *sum) {
     double volume = 0;
     FUZZ_EXPECT(!ilsa_get_mesh_def(s, &mesh) && !ilsa_get_width(s, &width));
     FUZZ_EXPECT(!ilsa_get_pressure(s, &pressure) && !ilsa_get_stress(s, &stress));
-    FUZZ_EXPECT(!ilsa_get_trigger_time(s, &trigger) && !ilsa_get_footprint(s, &kind));
+    FUZZ_EXPECT(!ilsa_get_trigger_time(s, &trigger) && !ilsa_get_cell_kinds(s, &kind));
     for (int k = 0; k < mesh.nx * mesh.ny; k++) {
         FUZZ_EXPECT(kind[k] <= ILSA_CELL_CHANNEL && isfinite(stress[k]));
         FUZZ_EXPECT(is_finite_and_positive(width[k]) && isfinite(pressure[k]));
@@ -120,7 +120,7 @@ static void check_front(ilsa_solver *s) {
         FUZZ_EXPECT(is_finite_and_positive(front[k].V) && front[k].loop >= 0);
         check_regime(&front[k].regime);
     }
-    FUZZ_EXPECT(!ilsa_get_regime(s, &survey, &cells) && cells > 0);
+    FUZZ_EXPECT(!ilsa_get_survey(s, &survey, &cells) && cells > 0);
     for (size_t k = 0; k < cells; k++) {
         FUZZ_EXPECT(is_finite_and_positive(survey[k].s) && is_finite_and_positive(survey[k].V));
         FUZZ_EXPECT(is_finite_and_positive(survey[k].w));
@@ -498,7 +498,7 @@ static void read_solver(world *w) {
     check_status(ilsa_get_pressure(s, fuzz_choice(&w->in, 2) ? &field : NULL), NULL);
     check_status(ilsa_get_stress(s, &field), NULL);
     check_status(ilsa_get_trigger_time(s, &field), NULL);
-    check_status(ilsa_get_footprint(s, &kind), NULL);
+    check_status(ilsa_get_cell_kinds(s, &kind), NULL);
     check_status(ilsa_get_summary(s, &summary), NULL);
     check_status(ilsa_get_model(s, &model), NULL);
 }
@@ -511,7 +511,7 @@ static void read_front(world *w) {
     mark(s);
     check_status(ilsa_get_front(s, fuzz_choice(&w->in, 8) ? &front : NULL, &count), s);
     mark(s);
-    check_status(ilsa_get_regime(s, &survey, fuzz_choice(&w->in, 8) ? &count : NULL), s);
+    check_status(ilsa_get_survey(s, &survey, fuzz_choice(&w->in, 8) ? &count : NULL), s);
 }
 
 /* Snapshots */

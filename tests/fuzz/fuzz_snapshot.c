@@ -118,7 +118,7 @@ static void check_widths(const ilsa_solver *solver) {
     const double *width, *pressure;
     const unsigned char *kind;
     FUZZ_EXPECT(!ilsa_get_width(solver, &width) && !ilsa_get_pressure(solver, &pressure));
-    FUZZ_EXPECT(!ilsa_get_footprint(solver, &kind));
+    FUZZ_EXPECT(!ilsa_get_cell_kinds(solver, &kind));
     for (int k = 0; k < SIZE * SIZE; k++) {
         FUZZ_EXPECT(width[k] >= 0 && isfinite(width[k]) && isfinite(pressure[k]));
         FUZZ_EXPECT(kind[k] <= ILSA_CELL_CHANNEL);
@@ -136,7 +136,7 @@ static void use(ilsa_solver *solver) {
     check_widths(solver);
     FUZZ_EXPECT(!ilsa_get_summary(solver, &summary) && isfinite(summary.time));
     FUZZ_EXPECT(!ilsa_get_front(solver, &points, &count));
-    FUZZ_EXPECT(!ilsa_get_regime(solver, &survey, &count));
+    FUZZ_EXPECT(!ilsa_get_survey(solver, &survey, &count));
     FUZZ_EXPECT(!ilsa_suggest_dt(solver, &dt) && dt > 0);
     ilsa_status status = ilsa_step(solver, fmin(dt, 1e300), &report);
     FUZZ_EXPECT(status == ILSA_OK || *ilsa_last_error(solver));

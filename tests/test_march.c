@@ -22,28 +22,28 @@ static double larger(double a, double b) {
 }
 
 /* Deterministic numbers in -1 .. 1. */
-static double next_random(uint64_t *seed) {
-    *seed = *seed * 6364136223846793005u + 1442695040888963407u;
-    return (double)(*seed >> 11) * 0x1p-52 - 1;
+static double next_random(uint64_t *survey) {
+    *survey = *survey * 6364136223846793005u + 1442695040888963407u;
+    return (double)(*survey >> 11) * 0x1p-52 - 1;
 }
 
-/* A mesh, the seeds on it and what one march makes of them. */
+/* A mesh, the survey_cells on it and what one march makes of them. */
 typedef struct scene {
     grid g;
     unsigned char *kind;
     double *level;
-    front_seed *seeds;
-    int seed_count;
-    front *f;
+    survey_cell *survey_cells;
+    int survey_count;
+    march *f;
 } scene;
 
 static scene make_scene(int nx, int ny, double dx, double dy) {
     ilsa_mesh_def def = {nx, ny, dx, dy};
     size_t cells = (size_t)nx * (size_t)ny;
-    scene s = {.g = ilsai_grid(&def, 0, 0), .kind = calloc(cells, 1), .f = ilsai_front_create()};
+    scene s = {.g = ilsai_grid(&def, 0, 0), .kind = calloc(cells, 1), .f = ilsai_march_create()};
     s.level = malloc(cells * sizeof *s.level);
-    s.seeds = malloc(cells * sizeof *s.seeds);
-    if (!s.kind || !s.level || !s.seeds || !s.f) {
+    s.survey_cells = malloc(cells * sizeof *s.survey_cells);
+    if (!s.kind || !s.level || !s.survey_cells || !s.f) {
         abort();
     }
     for (size_t c = 0; c < cells; c++) {
@@ -55,8 +55,8 @@ static scene make_scene(int nx, int ny, double dx, double dy) {
 static void free_scene(scene *s) {
     free(s->kind);
     free(s->level);
-    free(s->seeds);
-    ilsai_front_destroy(&s->f);
+    free(s->survey_cells);
+    ilsai_march_destroy(&s->f);
 }
 
 static int cell_count(const scene *s) {
@@ -71,11 +71,11 @@ static double y_of(const scene *s, int cell) {
     return ilsai_grid_y(&s->g, cell / s->g.nx);
 }
 
-static front_seed *add_seed(scene *s, int cell, double T) {
-    front_seed *seed = &s->seeds[s->seed_count++];
-    *seed = (front_seed){.cell = cell, .s0 = -T, .h = 1, .s = -T, .V = 0, .w = 1};
+static survey_cell *add_seed(scene *s, int cell, double T) {
+    survey_cell *survey = &s->survey_cells[s->survey_count++];
+    *survey = (survey_cell){.cell = cell, .s0 = -T, .h = 1, .s = -T, .V = 0, .w = 1};
     s->kind[cell] = ILSA_CELL_SURVEY;
-    return seed;
+    return survey;
 }
 
 static box whole(const scene *s) {
@@ -83,13 +83,13 @@ static box whole(const scene *s) {
 }
 
 static const front_cell *march_in(scene *s, box region, double limit, int *count) {
-    assert_int_equal(
-        ilsai_front_march(s->f, &s->g, &region, s->kind, s->seeds, s->seed_count, limit, s->level),
-        ILSA_OK);
-    return ilsai_front_cells(s->f, count);
+    assert_int_equal(ilsai_march_run(s->f, &s->g, &region, s->kind, s->survey_cells,
+                                     s->survey_count, limit, s->level),
+                     ILSA_OK);
+    return ilsai_march_cells(s->f, count);
 }
 
-static const front_cell *march(scene *s, double limit, int *count) {
+static const front_cell *march_all(scene *s, double limit, int *count) {
     return march_in(s, whole(s), limit, count);
 }
 
@@ -125,13 +125,13 @@ static scene plane_scene(double angle, double dx, double dy) {
 static double worst_of_plane(double angle, double dx, double dy) {
     scene s = plane_scene(angle, dx, dy);
     int count;
-    const front_cell *c = march(&s, INFINITY, &count);
+    const front_cell *c = march_all(&s, INFINITY, &count);
     double cos_a = cos(angle), sin_a = sin(angle), worst = 0;
-    assert_int_equal(count, cell_count(&s) - s.seed_count);
+    assert_int_equal(count, cell_count(&s) - s.survey_count);
     for (int k = 0; k < count; k++) {
         double x = x_of(&s, c[k].cell), y = y_of(&s, c[k].cell);
         double T = cos_a * x + sin_a * y - 10 * (dx + dy);
-        /* the corner furthest behind the front */
+        /* the corner furthest behind the march */
         double corner = T - 0.5 * dx * fabs(cos_a) - 0.5 * dy * fabs(sin_a);
         worst = larger(worst, fabs(c[k].T - T) / (dx + dy));
         worst = larger(worst, fabs(c[k].ell + corner) / (dx + dy));
@@ -173,8 +173,8 @@ static void planes_along_the_axes_are_exact(void **state) {
             }
         }
         int count;
-        const front_cell *c = march(&s, INFINITY, &count);
-        assert_int_equal(count, cell_count(&s) - s.seed_count);
+        const front_cell *c = march_all(&s, INFINITY, &count);
+        assert_int_equal(count, cell_count(&s) - s.survey_count);
         for (int k = 0; k < count; k++) {
             int n = along_x ? c[k].cell % s.g.nx : c[k].cell / s.g.nx;
             double T = (abs(n - from) - 0.75) * h;
@@ -189,7 +189,7 @@ static void planes_along_the_axes_are_exact(void **state) {
 /* What the march reached in a cell; the test fails if it did not. */
 static const front_cell *reached(const scene *s, int cell) {
     int count;
-    const front_cell *c = ilsai_front_cells(s->f, &count);
+    const front_cell *c = ilsai_march_cells(s->f, &count);
     for (int k = 0; k < count; k++) {
         if (c[k].cell == cell) {
             return &c[k];
@@ -199,7 +199,7 @@ static const front_cell *reached(const scene *s, int cell) {
     return NULL;
 }
 
-/* A cell between two seeds: left of it at T1, below it at T2. */
+/* A cell between two survey_cells: left of it at T1, below it at T2. */
 static scene corner_scene(double dx, double dy, double T1, double T2) {
     scene s = make_scene(3, 3, dx, dy);
     add_seed(&s, 3, T1);
@@ -217,7 +217,7 @@ static void two_parents_as_in_the_paper(void **state) {
             double d = 0.1 * n * (n > 0 ? dx : dy), T1 = -0.2, T2 = T1 + d;
             scene s = corner_scene(dx, dy, T1, T2);
             int count;
-            march(&s, INFINITY, &count);
+            march_all(&s, INFINITY, &count);
             const front_cell *c = reached(&s, 4);
             double theta = sqrt(dx * dx * (1 + beta * beta) - beta * beta * d * d);
             double T3 = (T1 + beta * beta * T2 + theta) / (1 + beta * beta);
@@ -238,10 +238,10 @@ static void parents_far_apart_give_one_side(void **state) {
         double dx = 0.6, dy = 1.1;
         scene s = corner_scene(dx, dy, -40, -40 + apart[n] * dx);
         scene t = corner_scene(dx, dy, -40 + apart[n] * dy, -40);
-        s.seeds[0].V = t.seeds[1].V = 2;
+        s.survey_cells[0].V = t.survey_cells[1].V = 2;
         int count;
-        march(&s, INFINITY, &count);
-        march(&t, INFINITY, &count);
+        march_all(&s, INFINITY, &count);
+        march_all(&t, INFINITY, &count);
         const front_cell *from_left = reached(&s, 4), *from_below = reached(&t, 4);
         assert_true(from_left->T == -40 + dx && from_left->V == 2);
         assert_true(from_left->cos_a == 1 && from_left->sin_a == 0);
@@ -274,7 +274,7 @@ static double corner_level(const scene *s, const circle *c, int cell, int farthe
     return best;
 }
 
-/* Full cells are channel cells, those beside a cell that is not are the seeds. */
+/* Full cells are channel cells, those beside a cell that is not are the survey_cells. */
 static void fill_circle(scene *s, const circle *c, double curvature) {
     for (int cell = 0; cell < cell_count(s); cell++) {
         int full = corner_level(s, c, cell, 0) <= 0;
@@ -305,7 +305,7 @@ static circle_errors circle_errors_at(int n, double aspect, double curvature) {
     circle_errors worst = {0, 0, 0};
     int count;
     fill_circle(&s, &c, curvature);
-    const front_cell *cell = march(&s, 2 * hypot(dx, dy), &count);
+    const front_cell *cell = march_all(&s, 2 * hypot(dx, dy), &count);
     for (int k = 0; k < count; k++) {
         double x = x_of(&s, cell[k].cell), y = y_of(&s, cell[k].cell);
         double corner = corner_level(&s, &c, cell[k].cell, 1);
@@ -363,16 +363,16 @@ static void curvature_sharpens_circles(void **state) {
 /* The discrete equation */
 
 /* Seeds on a ragged line around the middle, more than consistent with any front. */
-static scene ragged_scene(int nx, int ny, double dx, double dy, uint64_t seed) {
+static scene ragged_scene(int nx, int ny, double dx, double dy, uint64_t survey) {
     scene s = make_scene(nx, ny, dx, dy);
     for (int cell = 0; cell < cell_count(&s); cell++) {
         double r = hypot(x_of(&s, cell) / (0.25 * nx * dx), y_of(&s, cell) / (0.25 * ny * dy));
         if (r < 0.8) {
             s.kind[cell] = ILSA_CELL_CHANNEL;
         } else if (r < 1.1) {
-            front_seed *from = add_seed(&s, cell, -(dx + dy) * (1.5 + 1.2 * next_random(&seed)));
-            from->V = 2 + next_random(&seed);
-            from->w = 2 + next_random(&seed);
+            survey_cell *from = add_seed(&s, cell, -(dx + dy) * (1.5 + 1.2 * next_random(&survey)));
+            from->V = 2 + next_random(&survey);
+            from->w = 2 + next_random(&survey);
         }
     }
     return s;
@@ -433,7 +433,7 @@ static void every_cell_answers_to_its_neighbours(void **state) {
         double dy = aspect[n % 3], limit = n % 2 ? INFINITY : 4.0 * (double)(n % 5);
         scene s = ragged_scene(31, 26, 1, dy, n + 1);
         int count;
-        march(&s, limit, &count);
+        march_all(&s, limit, &count);
         worst = larger(worst, worst_of_equation(&s, limit));
         free_scene(&s);
     }
@@ -441,9 +441,9 @@ static void every_cell_answers_to_its_neighbours(void **state) {
     assert_true(worst < 1e-11);
 }
 
-static void curve(scene *s, double curvature, uint64_t seed) {
-    for (int k = 0; k < s->seed_count; k++) {
-        s->seeds[k].curvature = curvature * next_random(&seed);
+static void curve(scene *s, double curvature, uint64_t survey) {
+    for (int k = 0; k < s->survey_count; k++) {
+        s->survey_cells[k].curvature = curvature * next_random(&survey);
     }
 }
 
@@ -454,7 +454,7 @@ static void cells_come_after_their_parents(void **state) {
         scene s = ragged_scene(30, 30, 1, 0.7, n + 1);
         curve(&s, 0.05 * (double)n, n);
         int count, *order = calloc((size_t)cell_count(&s), sizeof *order);
-        const front_cell *c = march(&s, INFINITY, &count);
+        const front_cell *c = march_all(&s, INFINITY, &count);
         for (int k = 0; k < count; k++) {
             int i = c[k].cell % s.g.nx, j = c[k].cell / s.g.nx, parents = 0;
             assert_true(k == 0 || c[k].T >= c[k - 1].T);
@@ -481,8 +481,8 @@ static void curvature_enters_smoothly(void **state) {
         scene s = ragged_scene(30, 30, 1, 0.7, n + 1), t = ragged_scene(30, 30, 1, 0.7, n + 1);
         int count, same;
         curve(&s, tiny, n);
-        march(&s, INFINITY, &count);
-        march(&t, INFINITY, &same);
+        march_all(&s, INFINITY, &count);
+        march_all(&t, INFINITY, &same);
         assert_int_equal(count, same);
         for (int cell = 0; cell < cell_count(&s); cell++) {
             double off = s.level[cell] - t.level[cell];
@@ -501,11 +501,11 @@ static void normals_are_unit_vectors(void **state) {
     scene s = ragged_scene(41, 37, 1, 2.5, 77);
     curve(&s, 0.3, 1);
     int count;
-    const front_cell *c = march(&s, INFINITY, &count);
+    const front_cell *c = march_all(&s, INFINITY, &count);
     for (int k = 0; k < count; k++) {
         assert_true(c[k].cos_a >= 0 && c[k].sin_a >= 0);
         assert_true(fabs(hypot(c[k].cos_a, c[k].sin_a) - 1) < 1e-13);
-        double full = ilsai_front_full(&s.g, c[k].cos_a, c[k].sin_a);
+        double full = ilsai_march_full(&s.g, c[k].cos_a, c[k].sin_a);
         assert_true(fabs(full - s.g.dx * c[k].cos_a - s.g.dy * c[k].sin_a) < 1e-14);
         assert_true(fabs(c[k].ell + c[k].T - 0.5 * full) < 1e-12);
     }
@@ -518,22 +518,22 @@ static void seeds_and_channel_are_kept(void **state) {
     (void)state;
     scene s = ragged_scene(25, 25, 1, 1, 5);
     int count;
-    march(&s, 3, &count);
-    int seeds = 0, infinite = 0, channel = 0;
+    march_all(&s, 3, &count);
+    int survey_cells = 0, infinite = 0, channel = 0;
     for (int cell = 0; cell < cell_count(&s); cell++) {
         if (s.kind[cell] == ILSA_CELL_CHANNEL) {
             channel++;
             assert_true(s.level[cell] == untouched);
         } else if (s.kind[cell] == ILSA_CELL_SURVEY) {
-            assert_int_equal(s.seeds[seeds].cell, cell);
-            assert_true(s.level[cell] == -s.seeds[seeds++].s);
+            assert_int_equal(s.survey_cells[survey_cells].cell, cell);
+            assert_true(s.level[cell] == -s.survey_cells[survey_cells++].s);
         } else {
             infinite += s.level[cell] == INFINITY;
         }
     }
-    assert_int_equal(seeds, s.seed_count);
+    assert_int_equal(survey_cells, s.survey_count);
     assert_true(infinite > 50);
-    assert_int_equal(count + infinite + seeds + channel, cell_count(&s));
+    assert_int_equal(count + infinite + survey_cells + channel, cell_count(&s));
     free_scene(&s);
 }
 
@@ -542,10 +542,10 @@ static void limit_cuts_the_march(void **state) {
     (void)state;
     scene far = ragged_scene(40, 40, 1, 1.3, 8), near = ragged_scene(40, 40, 1, 1.3, 8);
     int far_count, near_count;
-    const front_cell *f = march(&far, INFINITY, &far_count);
+    const front_cell *f = march_all(&far, INFINITY, &far_count);
     static const double limits[] = {-100, -1, 0, 2, 7.5};
     for (size_t n = 0; n < sizeof limits / sizeof *limits; n++) {
-        const front_cell *c = march(&near, limits[n], &near_count);
+        const front_cell *c = march_all(&near, limits[n], &near_count);
         assert_true(near_count < far_count && f[near_count].T > limits[n]);
         assert_true(near_count == 0 || f[near_count - 1].T <= limits[n]);
         assert_true(same_cells(c, f, near_count));
@@ -554,7 +554,7 @@ static void limit_cuts_the_march(void **state) {
         }
     }
     int again;
-    const front_cell *c = march(&near, f[9].T, &again); /* the limit itself is within */
+    const front_cell *c = march_all(&near, f[9].T, &again); /* the limit itself is within */
     assert_true(again >= 10 && c[9].T == f[9].T);
     free_scene(&far);
     free_scene(&near);
@@ -573,7 +573,7 @@ static void region_bounds_the_march(void **state) {
         assert_true(inside || s.level[cell] == untouched);
         t.kind[cell] = inside ? t.kind[cell] : ILSA_CELL_CHANNEL;
     }
-    march(&t, INFINITY, &other_count);
+    march_all(&t, INFINITY, &other_count);
     assert_int_equal(count, other_count);
     assert_memory_equal(s.level, t.level, (size_t)cell_count(&s) * sizeof *s.level);
     free_scene(&s);
@@ -593,21 +593,21 @@ static void closed_in_cells_are_not_reached(void **state) {
         }
     }
     int count;
-    march(&s, INFINITY, &count);
+    march_all(&s, INFINITY, &count);
     assert_int_equal(count, 81 - 1 - 25);
     assert_true(s.level[ilsai_grid_cell(&s.g, 5, 5)] == INFINITY);
     assert_true(isfinite(s.level[ilsai_grid_cell(&s.g, 8, 8)]));
     free_scene(&s);
 }
 
-/* A survey cell that is no seed belongs to the channel: the march goes around it. */
+/* A survey cell that is no survey belongs to the channel: the march goes around it. */
 static void survey_cells_are_not_entered(void **state) {
     (void)state;
     scene s = make_scene(7, 5, 1, 1);
     int other = ilsai_grid_cell(&s.g, 3, 2), count;
     add_seed(&s, ilsai_grid_cell(&s.g, 1, 2), -1);
     s.kind[other] = ILSA_CELL_SURVEY;
-    const front_cell *c = march(&s, INFINITY, &count);
+    const front_cell *c = march_all(&s, INFINITY, &count);
     assert_int_equal(count, 35 - 2);
     assert_true(s.level[other] == untouched);
     for (int k = 0; k < count; k++) {
@@ -620,7 +620,7 @@ static void no_seeds_reach_nothing(void **state) {
     (void)state;
     scene s = make_scene(5, 5, 1, 1);
     int count;
-    march(&s, INFINITY, &count);
+    march_all(&s, INFINITY, &count);
     assert_int_equal(count, 0);
     for (int cell = 0; cell < 25; cell++) {
         assert_true(s.level[cell] == INFINITY);
@@ -634,18 +634,18 @@ static void uniform_velocity_stays_uniform(void **state) {
     (void)state;
     scene s = ragged_scene(50, 50, 1, 0.4, 4);
     curve(&s, 0.3, 2);
-    for (int k = 0; k < s.seed_count; k++) {
-        s.seeds[k].V = 0.37;
+    for (int k = 0; k < s.survey_count; k++) {
+        s.survey_cells[k].V = 0.37;
     }
     int count;
-    const front_cell *c = march(&s, INFINITY, &count);
+    const front_cell *c = march_all(&s, INFINITY, &count);
     for (int k = 0; k < count; k++) {
         assert_true(fabs(c[k].V - 0.37) < 1e-13);
     }
     free_scene(&s);
 }
 
-/* V is what T loses in time when every seed moves on with its own V: central differences, of
+/* V is what T loses in time when every survey moves on with its own V: central differences, of
  * second order where the same parents keep their say. */
 static void velocity_is_the_change_of_distance(void **state) {
     (void)state;
@@ -655,14 +655,14 @@ static void velocity_is_the_change_of_distance(void **state) {
         scene s = ragged_scene(30, 30, 1, 0.8, n + 100),
               before = ragged_scene(30, 30, 1, 0.8, n + 100);
         scene after = ragged_scene(30, 30, 1, 0.8, n + 100);
-        for (int k = 0; k < s.seed_count; k++) {
-            before.seeds[k].s -= eps * s.seeds[k].V;
-            after.seeds[k].s += eps * s.seeds[k].V;
+        for (int k = 0; k < s.survey_count; k++) {
+            before.survey_cells[k].s -= eps * s.survey_cells[k].V;
+            after.survey_cells[k].s += eps * s.survey_cells[k].V;
         }
         int count, same;
-        march(&before, INFINITY, &same);
-        march(&after, INFINITY, &same);
-        const front_cell *c = march(&s, INFINITY, &count);
+        march_all(&before, INFINITY, &same);
+        march_all(&after, INFINITY, &same);
+        const front_cell *c = march_all(&s, INFINITY, &count);
         for (int k = 0; k < count; k++) {
             double V = (before.level[c[k].cell] - after.level[c[k].cell]) / (2 * eps);
             int axis = c[k].cos_a < 1e-3 || c[k].sin_a < 1e-3; /* where parents come and go */
@@ -678,15 +678,15 @@ static void velocity_is_the_change_of_distance(void **state) {
     assert_true(compared > 2000 && worst < 1e-4);
 }
 
-/* Each cell knows the seeds that its level comes from, and how much each: as many as it can keep,
- * their velocities by these parts are its own. */
+/* Each cell knows the survey_cells that its level comes from, and how much each: as many as it can
+ * keep, their velocities by these parts are its own. */
 static void parents_weigh_as_the_derivative(void **state) {
     (void)state;
     int compared = 0;
     for (uint64_t n = 0; n < 10; n++) {
         scene s = ragged_scene(30, 30, 1, 0.8, n + 100);
         int count;
-        const front_cell *c = march(&s, INFINITY, &count);
+        const front_cell *c = march_all(&s, INFINITY, &count);
         for (int k = 0; k < count; k++) {
             const front_parents *from = &c[k].from;
             double V = 0, sum = 0;
@@ -694,9 +694,9 @@ static void parents_weigh_as_the_derivative(void **state) {
             for (int p = 0; p < from->count; p++) {
                 assert_true(from->weight[p] > 0);
                 sum += from->weight[p];
-                V += from->weight[p] * s.seeds[from->seed[p]].V;
+                V += from->weight[p] * s.survey_cells[from->survey[p]].V;
                 for (int q = 0; q < p; q++) {
-                    assert_true(from->seed[p] != from->seed[q]);
+                    assert_true(from->survey[p] != from->survey[q]);
                 }
             }
             assert_true(fabs(sum - 1) < 1e-14);
@@ -714,10 +714,10 @@ static void stress_intensity_of_two_parents(void **state) {
     (void)state;
     double w1 = 0.3, w2 = 0.5, s1 = 0.8, s2 = 0.65;
     scene s = corner_scene(1, 1, -s1, -s2);
-    s.seeds[0].w = w1;
-    s.seeds[1].w = w2;
+    s.survey_cells[0].w = w1;
+    s.survey_cells[1].w = w2;
     int count;
-    march(&s, INFINITY, &count);
+    march_all(&s, INFINITY, &count);
     const front_cell *c = reached(&s, 4);
     double truth = (w1 * sqrt(s1) + w2 * sqrt(s2)) / (s1 + s2); /* (4.19) */
     assert_true(fabs(c->K_num / c->K_den / truth - 1) < 1e-15);
@@ -733,20 +733,20 @@ static void stress_intensity_is_a_mean(void **state) {
         scene s = ragged_scene(40, 33, 1, 1.6, n + 3);
         double low = INFINITY, high = 0;
         int count;
-        for (int k = 0; k < s.seed_count; k++) {
-            double K = s.seeds[k].w / sqrt(s.seeds[k].s);
+        for (int k = 0; k < s.survey_count; k++) {
+            double K = s.survey_cells[k].w / sqrt(s.survey_cells[k].s);
             low = fmin(low, K);
             high = fmax(high, K);
         }
-        const front_cell *c = march(&s, INFINITY, &count);
+        const front_cell *c = march_all(&s, INFINITY, &count);
         for (int k = 0; k < count; k++) {
             double K = c[k].K_num / c[k].K_den;
             assert_true(K >= low * (1 - 1e-14) && K <= high * (1 + 1e-14));
         }
-        for (int k = 0; k < s.seed_count; k++) {
-            s.seeds[k].w = 1.7 * sqrt(s.seeds[k].s);
+        for (int k = 0; k < s.survey_count; k++) {
+            s.survey_cells[k].w = 1.7 * sqrt(s.survey_cells[k].s);
         }
-        c = march(&s, INFINITY, &count);
+        c = march_all(&s, INFINITY, &count);
         for (int k = 0; k < count; k++) {
             assert_true(fabs(c[k].K_num / c[k].K_den - 1.7) < 1e-13);
         }
@@ -762,13 +762,13 @@ static double mirrored_noise(const scene *s, int mirror_x, int mirror_y, int cel
     int mi = s->g.nx - 1 - i, mj = s->g.ny - 1 - j;
     i = mirror_x && mi > i ? mi : i;
     j = mirror_y && mj > j ? mj : j;
-    uint64_t seed = salt + 1000003u * (uint64_t)i + 7919u * (uint64_t)j;
-    next_random(&seed);
-    next_random(&seed);
-    return next_random(&seed);
+    uint64_t survey = salt + 1000003u * (uint64_t)i + 7919u * (uint64_t)j;
+    next_random(&survey);
+    next_random(&survey);
+    return next_random(&survey);
 }
 
-/* A scene with the mirrors; folded: with the representatives of its seeds alone. */
+/* A scene with the mirrors; folded: with the representatives of its survey_cells alone. */
 static scene mirrored_scene(int nx, int ny, int mirror_x, int mirror_y, int folded, uint64_t salt,
                             double curvature) {
     scene s = make_scene(nx, ny, 1, 0.8);
@@ -780,10 +780,10 @@ static scene mirrored_scene(int nx, int ny, int mirror_x, int mirror_y, int fold
         int i = cell % nx, j = cell / nx;
         if (s.kind[cell] == ILSA_CELL_SURVEY && i >= s.g.lo_x && j >= s.g.lo_y) {
             double a = mirrored_noise(&s, mirror_x, mirror_y, cell, salt);
-            front_seed *seed = add_seed(&s, cell, -7 * (1.3 - r) - 0.8 * a);
-            seed->V = 2 + mirrored_noise(&s, mirror_x, mirror_y, cell, salt + 1);
-            seed->w = 2 + mirrored_noise(&s, mirror_x, mirror_y, cell, salt + 2);
-            seed->curvature = curvature * mirrored_noise(&s, mirror_x, mirror_y, cell, salt + 3);
+            survey_cell *survey = add_seed(&s, cell, -7 * (1.3 - r) - 0.8 * a);
+            survey->V = 2 + mirrored_noise(&s, mirror_x, mirror_y, cell, salt + 1);
+            survey->w = 2 + mirrored_noise(&s, mirror_x, mirror_y, cell, salt + 2);
+            survey->curvature = curvature * mirrored_noise(&s, mirror_x, mirror_y, cell, salt + 3);
         }
     }
     return s;
@@ -808,8 +808,8 @@ static double fold_difference(comparison *compare, double curvature, int nx, int
     int mirror_x = mirror & 1, mirror_y = mirror >> 1, count, folded_count, image[4], stood_for = 0;
     scene all = mirrored_scene(nx, ny, mirror_x, mirror_y, 0, salt, curvature);
     scene part = mirrored_scene(nx, ny, mirror_x, mirror_y, 1, salt, curvature);
-    march(&all, 5, &count);
-    const front_cell *c = march(&part, 5, &folded_count);
+    march_all(&all, 5, &count);
+    const front_cell *c = march_all(&part, 5, &folded_count);
     double worst = 0;
     for (int k = 0; k < folded_count; k++) {
         int images = ilsai_grid_images(&part.g, c[k].cell % nx, c[k].cell / nx, image);
@@ -867,23 +867,23 @@ static void folded_stress_intensity_is_the_unfolded_one(void **state) {
 static void one_handle_serves_many_marches(void **state) {
     (void)state;
     static const int size[] = {20, 60, 12, 61, 20};
-    front *used = ilsai_front_create();
+    march *used = ilsai_march_create();
     assert_non_null(used);
     for (size_t n = 0; n < sizeof size / sizeof *size; n++) {
         scene fresh = ragged_scene(size[n], size[n], 1, 1, 6);
         int count, used_count;
-        const front_cell *c = march(&fresh, 6, &count);
+        const front_cell *c = march_all(&fresh, 6, &count);
         box region = whole(&fresh);
-        ilsai_front_march(used, &fresh.g, &region, fresh.kind, fresh.seeds, fresh.seed_count, 6,
-                          fresh.level);
-        const front_cell *d = ilsai_front_cells(used, &used_count);
+        ilsai_march_run(used, &fresh.g, &region, fresh.kind, fresh.survey_cells, fresh.survey_count,
+                        6, fresh.level);
+        const front_cell *d = ilsai_march_cells(used, &used_count);
         assert_int_equal(count, used_count);
         assert_true(same_cells(c, d, count));
         free_scene(&fresh);
     }
-    ilsai_front_destroy(&used);
+    ilsai_march_destroy(&used);
     assert_null(used);
-    ilsai_front_destroy(&used);
+    ilsai_march_destroy(&used);
 }
 
 static void no_memory_is_reported(void **state) {
@@ -892,19 +892,20 @@ static void no_memory_is_reported(void **state) {
     box region = whole(&s);
     int count, again, failures = 0;
     ilsa_status status = ILSA_ERR_MEMORY;
-    const front_cell *c = march(&t, 20, &count);
+    const front_cell *c = march_all(&t, 20, &count);
     while (status == ILSA_ERR_MEMORY && failures < 100) {
         allocations_left = failures++;
-        status = ilsai_front_march(s.f, &s.g, &region, s.kind, s.seeds, s.seed_count, 20, s.level);
+        status = ilsai_march_run(s.f, &s.g, &region, s.kind, s.survey_cells, s.survey_count, 20,
+                                 s.level);
         allocations_left = -1;
     }
     assert_int_equal(status, ILSA_OK);
     assert_true(failures > 4);
-    const front_cell *d = ilsai_front_cells(s.f, &again);
+    const front_cell *d = ilsai_march_cells(s.f, &again);
     assert_int_equal(count, again);
     assert_true(same_cells(c, d, count));
     allocations_left = 0;
-    front *none = ilsai_front_create();
+    march *none = ilsai_march_create();
     allocations_left = -1;
     assert_null(none);
     free_scene(&s);

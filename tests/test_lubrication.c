@@ -1,4 +1,4 @@
-/* The active cells and the lubrication operator on them, against Poiseuille's law. */
+/* The numbered cells and the lubrication operator on them, against Poiseuille's law. */
 #include "failing.h"
 #include "flow/lubrication.h"
 #include <ilsa/solver.h>
@@ -26,14 +26,14 @@ static double next_random(uint64_t *seed) {
     return (double)(*seed >> 11) * 0x1p-52 - 1;
 }
 
-/* Fields over a mesh, its active cells and the operator on them. */
+/* Fields over a mesh, its numbered cells and the operator on them. */
 typedef struct scene {
     grid g;
     box footprint;
     unsigned char *kind;
-    double *width, *width_old, *pressure, *gain;
-    active a;
-    flow f;
+    double *width, *width_old, *pressure, *source_term;
+    unknowns a;
+    lubrication f;
 } scene;
 
 static scene make_scene(int nx, int ny, int mirror_x, int mirror_y) {
@@ -43,11 +43,11 @@ static scene make_scene(int nx, int ny, int mirror_x, int mirror_y) {
     s.width = calloc(cells, sizeof(double));
     s.width_old = calloc(cells, sizeof(double));
     s.pressure = calloc(cells, sizeof(double));
-    s.gain = calloc(cells, sizeof(double));
-    if (!s.kind || !s.width || !s.pressure || !s.gain) {
+    s.source_term = calloc(cells, sizeof(double));
+    if (!s.kind || !s.width || !s.pressure || !s.source_term) {
         abort();
     }
-    assert_int_equal(ilsai_active_create(&s.a, &def), ILSA_OK);
+    assert_int_equal(ilsai_unknowns_create(&s.a, &def), ILSA_OK);
     s.footprint = (box){0, nx - 1, 0, ny - 1};
     return s;
 }
@@ -57,9 +57,9 @@ static void free_scene(scene *s) {
     free(s->width);
     free(s->width_old);
     free(s->pressure);
-    free(s->gain);
-    ilsai_active_destroy(&s->a);
-    ilsai_flow_destroy(&s->f);
+    free(s->source_term);
+    ilsai_unknowns_destroy(&s->a);
+    ilsai_lubrication_destroy(&s->f);
 }
 
 static int cell_count(const scene *s) {
@@ -96,18 +96,18 @@ static void fill(scene *s, int mirror, uint64_t salt) {
     }
 }
 
-/* Lists the active cells, sets the operator for widths that stay; gain over the mesh. */
+/* Lists the numbered cells, sets the operator for widths that stay; gain over the mesh. */
 static void work_out(scene *s) {
-    double gain[4000];
+    double source_term[4000];
     memcpy(s->width_old, s->width, (size_t)cell_count(s) * sizeof *s->width);
-    assert_int_equal(ilsai_active_set(&s->a, &s->g, &s->footprint, s->kind), ILSA_OK);
+    assert_int_equal(ilsai_unknowns_set(&s->a, &s->g, &s->footprint, s->kind), ILSA_OK);
     assert_true(s->a.count < 4000);
-    assert_int_equal(ilsai_flow_reserve(&s->f, s->a.count), ILSA_OK);
-    ilsai_flow_set(&s->f, &s->a, &s->g, s->width, s->width_old, s->pressure, dt_over_mu);
+    assert_int_equal(ilsai_lubrication_reserve(&s->f, s->a.count), ILSA_OK);
+    ilsai_lubrication_set(&s->f, &s->a, &s->g, s->width, s->width_old, s->pressure, dt_over_mu);
     for (int k = 0; k < s->a.count; k++)
-        gain[k] = ilsai_flow_gain_of(&s->f, &s->a, s->pressure, k);
+        source_term[k] = ilsai_lubrication_inflow(&s->f, &s->a, s->pressure, k);
     for (int k = 0; k < s->a.count; k++) {
-        s->gain[s->a.cell[k]] = gain[k];
+        s->source_term[s->a.cell[k]] = source_term[k];
     }
 }
 
@@ -126,18 +126,19 @@ static void active_cells_are_the_representatives_that_are_not_empty(void **state
         work_out(&s);
         int found = 0;
         for (int cell = 0; cell < cell_count(&s); cell++) {
-            int i = cell % s.g.nx, j = cell / s.g.nx, slot = s.a.slot[cell];
+            int i = cell % s.g.nx, j = cell / s.g.nx, number = s.a.number[cell];
             if (s.kind[cell] == ILSA_CELL_EMPTY || i < s.g.lo_x || j < s.g.lo_y) {
-                assert_int_equal(slot, -1);
+                assert_int_equal(number, -1);
                 continue;
             }
             found++;
-            assert_true(slot >= 0 && slot < s.a.count && s.a.cell[slot] == cell);
-            assert_int_equal(s.a.unknown[slot] == UNKNOWN_PRESSURE, s.kind[cell] == ILSA_CELL_TIP);
+            assert_true(number >= 0 && number < s.a.count && s.a.cell[number] == cell);
+            assert_int_equal(s.a.unknown[number] == UNKNOWN_PRESSURE,
+                             s.kind[cell] == ILSA_CELL_TIP);
             for (int face = 0; face < GRID_FACES; face++) {
                 int other = ilsai_grid_neighbour(&s.g, i, j, face);
-                int expected = other < 0 ? -1 : s.a.slot[other];
-                assert_int_equal(s.a.neighbour[GRID_FACES * slot + face], expected);
+                int expected = other < 0 ? -1 : s.a.number[other];
+                assert_int_equal(s.a.neighbour[GRID_FACES * number + face], expected);
             }
         }
         assert_int_equal(found, s.a.count);
@@ -174,11 +175,11 @@ static void cells_of_the_last_list_are_forgotten(void **state) {
     memset(s.kind, ILSA_CELL_EMPTY, (size_t)cell_count(&s));
     s.kind[210] = ILSA_CELL_CHANNEL;
     work_out(&s);
-    assert_true(before > 100 && s.a.count == 1 && s.a.slot[210] == 0);
+    assert_true(before > 100 && s.a.count == 1 && s.a.number[210] == 0);
     for (int cell = 0; cell < cell_count(&s); cell++) {
-        assert_true(s.a.slot[cell] == -1 || cell == 210);
+        assert_true(s.a.number[cell] == -1 || cell == 210);
     }
-    assert_true(s.gain[210] == 0); /* alone: no fluid passes */
+    assert_true(s.source_term[210] == 0); /* alone: no fluid passes */
     free_scene(&s);
 }
 
@@ -196,8 +197,8 @@ static void volume_is_conserved(void **state) {
             work_out(&s);
             for (int k = 0; k < s.a.count; k++) {
                 int cell = s.a.cell[k];
-                sum += weight(&s, cell) * s.gain[cell];
-                size += weight(&s, cell) * fabs(s.gain[cell]);
+                sum += weight(&s, cell) * s.source_term[cell];
+                size += weight(&s, cell) * fabs(s.source_term[cell]);
             }
             worst = larger(worst, fabs(sum) / size);
             free_scene(&s);
@@ -217,7 +218,7 @@ static void flow_dissipates(void **state) {
         work_out(&s);
         for (int k = 0; k < s.a.count; k++) {
             int cell = s.a.cell[k];
-            work += weight(&s, cell) * s.gain[cell] * s.pressure[cell];
+            work += weight(&s, cell) * s.source_term[cell] * s.pressure[cell];
         }
         assert_true(work < 0);
         free_scene(&s);
@@ -230,7 +231,7 @@ static void no_fluid_passes_the_rim(void **state) {
     fill(&s, 0, 3);
     work_out(&s);
     double before[400];
-    memcpy(before, s.gain, sizeof before);
+    memcpy(before, s.source_term, sizeof before);
     int rim = 0;
     for (int cell = 0; cell < cell_count(&s); cell++) {
         if (s.kind[cell] == ILSA_CELL_EMPTY) {
@@ -239,7 +240,7 @@ static void no_fluid_passes_the_rim(void **state) {
         }
     }
     work_out(&s);
-    assert_memory_equal(before, s.gain, sizeof before);
+    assert_memory_equal(before, s.source_term, sizeof before);
     for (int at = 0; at < GRID_FACES * s.a.count; at++) {
         if (s.a.neighbour[at] < 0) {
             assert_true(s.f.conductance[at] == 0 && s.f.slope[at] == 0);
@@ -261,7 +262,7 @@ static void even_pressure_moves_nothing(void **state) {
     }
     work_out(&s);
     for (int cell = 0; cell < cell_count(&s); cell++) {
-        assert_true(s.gain[cell] == 0);
+        assert_true(s.source_term[cell] == 0);
     }
     for (int at = 0; at < GRID_FACES * s.a.count; at++) {
         assert_true(s.f.slope[at] == 0);
@@ -289,7 +290,7 @@ static void uniform_width_gives_the_analytic_flux(void **state) {
         double north = j == s.g.ny - 1 ? 0 : py + pyy * (y + 0.5 * s.g.dy);
         double south = j == 0 ? 0 : py + pyy * (y - 0.5 * s.g.dy);
         double gain = scale * ((east - west) / s.g.dx + (north - south) / s.g.dy);
-        assert_true(fabs(s.gain[cell] - gain) < 1e-12);
+        assert_true(fabs(s.source_term[cell] - gain) < 1e-12);
     }
     free_scene(&s);
 }
@@ -311,7 +312,7 @@ static void edge_width_is_the_mean(void **state) {
         s.pressure[b] = 5;
         work_out(&s);
         double gain = dt_over_mu * 0.343 * 4 / (h[n] * h[n]);
-        assert_true(fabs(s.gain[b] - gain) < 1e-14 && s.gain[a] == -s.gain[b]);
+        assert_true(fabs(s.source_term[b] - gain) < 1e-14 && s.source_term[a] == -s.source_term[b]);
     }
     free_scene(&s);
 }
@@ -326,12 +327,12 @@ static void one_factor_is_the_mean_over_the_step(void **state) {
     s.pressure[12] = 2;
     s.pressure[13] = 1;
     work_out(&s);
-    double before = s.f.conductance[GRID_FACES * s.a.slot[12] + GRID_RIGHT];
+    double before = s.f.conductance[GRID_FACES * s.a.number[12] + GRID_RIGHT];
     for (int dry = 0; dry < 2; dry++) {
         s.width_old[12] = 0.4;
         s.width_old[13] = dry ? 0 : 0.2;
-        ilsai_flow_set(&s.f, &s.a, &s.g, s.width, s.width_old, s.pressure, dt_over_mu);
-        double now = s.f.conductance[GRID_FACES * s.a.slot[12] + GRID_RIGHT];
+        ilsai_lubrication_set(&s.f, &s.a, &s.g, s.width, s.width_old, s.pressure, dt_over_mu);
+        double now = s.f.conductance[GRID_FACES * s.a.number[12] + GRID_RIGHT];
         double mean = 0.5 * (0.7 + 0.5 * (0.4 + s.width_old[13]));
         assert_true(fabs(now / before - mean / 0.7) < 1e-15);
     }
@@ -340,7 +341,7 @@ static void one_factor_is_the_mean_over_the_step(void **state) {
 
 /* Gain of one face as the operator has it. */
 static double face_gain(scene *s, int at) {
-    ilsai_flow_set(&s->f, &s->a, &s->g, s->width, s->width_old, s->pressure, dt_over_mu);
+    ilsai_lubrication_set(&s->f, &s->a, &s->g, s->width, s->width_old, s->pressure, dt_over_mu);
     int here = s->a.cell[at / GRID_FACES], there = s->a.cell[s->a.neighbour[at]];
     return s->f.conductance[at] * (s->pressure[there] - s->pressure[here]);
 }
@@ -392,7 +393,7 @@ static void folded_gain_is_the_unfolded_one(void **state) {
         for (int k = 0; k < part.a.count; k++) {
             int cell = part.a.cell[k];
             stood_for += weight(&part, cell);
-            assert_true(fabs(part.gain[cell] - all.gain[cell]) < 1e-14);
+            assert_true(fabs(part.source_term[cell] - all.source_term[cell]) < 1e-14);
         }
         assert_int_equal(stood_for, all.a.count);
         free_scene(&part);
@@ -408,24 +409,24 @@ static void no_memory_is_reported(void **state) {
     fill(&s, 0, 4);
     for (int allowed = 0; allowed < 3; allowed++) {
         allocations_left = allowed;
-        ilsa_status status = ilsai_active_set(&s.a, &s.g, &s.footprint, s.kind);
+        ilsa_status status = ilsai_unknowns_set(&s.a, &s.g, &s.footprint, s.kind);
         allocations_left = -1;
         assert_int_equal(status, ILSA_ERR_MEMORY);
         assert_int_equal(s.a.count, 0);
     }
     for (int allowed = 0; allowed < 2; allowed++) {
         allocations_left = allowed;
-        ilsa_status status = ilsai_flow_reserve(&s.f, 900);
+        ilsa_status status = ilsai_lubrication_reserve(&s.f, 900);
         allocations_left = -1;
         assert_int_equal(status, ILSA_ERR_MEMORY);
     }
     ilsa_mesh_def def = {30, 30, 1, 1};
-    active none;
+    unknowns none;
     allocations_left = 0;
-    ilsa_status status = ilsai_active_create(&none, &def);
+    ilsa_status status = ilsai_unknowns_create(&none, &def);
     allocations_left = -1;
     assert_int_equal(status, ILSA_ERR_MEMORY);
-    ilsai_active_destroy(&none);
+    ilsai_unknowns_destroy(&none);
     work_out(&s);
     assert_true(s.a.count > 100);
     free_scene(&s);
