@@ -4,6 +4,15 @@
 
 #include <ilsa/status.h>
 
+/* Makes a call that answers with a status; on any but ILSA_OK the calling function returns it. */
+#define ILSAI_TRY(call)                                                                            \
+    do {                                                                                           \
+        const ilsa_status tried_status = (call);                                                   \
+        if (tried_status != ILSA_OK) {                                                             \
+            return tried_status;                                                                   \
+        }                                                                                          \
+    } while (0)
+
 typedef struct error_text {
     char text[256];
 } error_text;
