@@ -9,7 +9,7 @@
 #include "../bench/common_radial.h"
 #include "host.h"
 #include "numbers.h"
-#include "step/state.h"
+#include "step/solver.h"
 
 #include <stdio.h>
 
@@ -157,7 +157,7 @@ static void start_up(void **unused) {
 static ilsa_summary into_barrier(tip_cell_velocity velocity, int parts) {
     ilsa_solver *solver = layer_start(&layer_scenes[LAYER_SYMMETRIC_PHI1], 11);
     assert_non_null(solver);
-    solver->velocity = velocity;
+    solver->numerics.velocity = velocity;
     assert_int_equal(layer_advance(solver, 150, parts), ILSA_OK);
     const ilsa_summary s = host_summary(solver);
     ilsa_solver_destroy(&solver);

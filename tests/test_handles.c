@@ -121,7 +121,7 @@ static void mesh_refuses_bad_definitions(void **state) {
     }
     check_failed(try_mesh(3, 3, 1, 1001), ILSA_ERR_VALUE, "dx / dy = 1 / 1001");
     check_failed(try_mesh(3, 3, 1001, 1), ILSA_ERR_VALUE, "must be 1e-3 .. 1e3");
-    check_failed(try_mesh(3, 3, 1e300, 1e-300), ILSA_ERR_VALUE, "inf");
+    check_failed(try_mesh(3, 3, 1e61, 1e61), ILSA_ERR_VALUE, "1e-60 .. 1e+60");
 }
 
 static void mesh_accepts_the_whole_range(void **state) {
@@ -129,7 +129,7 @@ static void mesh_accepts_the_whole_range(void **state) {
     assert_int_equal(try_mesh(3, 3, 1, 1), ILSA_OK);
     assert_int_equal(try_mesh(3, 1000000, 1, 1000), ILSA_OK);
     assert_int_equal(try_mesh(1000000, 3, 1e-6, 1e-9), ILSA_OK);
-    assert_int_equal(try_mesh(1 << 15, 1 << 13, 1e300, 1e299), ILSA_OK);
+    assert_int_equal(try_mesh(1 << 15, 1 << 13, 1e60, 1e59), ILSA_OK);
 }
 
 static void mesh_lives_and_dies(void **state) {

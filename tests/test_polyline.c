@@ -2,7 +2,7 @@
 #include "base/error.h"
 #include "failing.h"
 #include "host.h"
-#include "step/state.h"
+#include "step/solver.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -84,7 +84,7 @@ static void check_closed(curve all, double dx, double dy) {
 static void check_circle(ilsa_solver *solver, double x, double y, double R, double allowed) {
     curve c = front_of(solver);
     double worst = 0;
-    check_closed(c, solver->mesh.dx, solver->mesh.dy);
+    check_closed(c, solver->model.mesh.dx, solver->model.mesh.dy);
     assert_int_equal(loops_of(c), 1);
     for (size_t k = 0; k < c.count; k++) {
         const ilsa_front_point *p = &c.points[k];
@@ -216,13 +216,13 @@ static ilsa_solver *drawn(shape level) {
         for (int i = 0; i < SIDE; i++) {
             int cell = j * SIDE + i;
             double T = level(h * (i - HALF), h * (j - HALF));
-            solver->field.level[cell] = T;
-            solver->field.kind[cell] = T <= 0 ? ILSA_CELL_SURVEY : ILSA_CELL_EMPTY;
-            solver->field.width[cell] = solver->field.speed[cell] = T <= 0;
+            solver->fracture.cells.level[cell] = T;
+            solver->fracture.cells.kind[cell] = T <= 0 ? ILSA_CELL_SURVEY : ILSA_CELL_EMPTY;
+            solver->fracture.cells.width[cell] = solver->fracture.cells.speed[cell] = T <= 0;
             if (T <= 0)
                 ilsai_box_add(&wet, i, j);
         }
-    solver->now.footprint = wet;
+    solver->fracture.footprint = wet;
     return solver;
 }
 
@@ -329,7 +329,7 @@ static void every_saddle_is_resolved(void **unused) {
     check_closed(all, h, h);
     int cells = 0;
     for (int k = 0; k < CELLS; k++)
-        cells += solver->field.level[k] <= 0;
+        cells += solver->fracture.cells.level[k] <= 0;
     assert_int_equal(loops_of(all), cells);
     assert_int_equal(all.count, 4 * (size_t)cells);
     ilsa_solver_destroy(&solver);

@@ -110,7 +110,7 @@ static void create_refuses_bad_integers(void **state) {
     (void)state;
     parts p;
     make_parts(&p);
-    static const int counts[] = {0, -1, 1001, -2147483647}, levels[] = {0, -3, 6, 1000000};
+    static const int counts[] = {0, -1, 1001, -2147483647}, levels[] = {-1, -3, 6, 1000000};
     for (int k = 0; k < 4; k++) {
         ilsa_solver_def def = p.def;
         def.source_count = counts[k];
@@ -446,6 +446,40 @@ static void absurd_units_are_refused(void **state) {
     check_message(ilsa_last_error(solver), "must all be 1e-60 .. 1e+60");
     assert_int_equal(ilsa_set_rate(solver, 0, 1e61), ILSA_ERR_VALUE);
     ilsa_solver_destroy(&solver);
+}
+
+/* Zero is the default of the level, as of every other option. */
+static void level_zero_is_the_default(void **state) {
+    (void)state;
+    host_scene scene = host_penny(0, 41, 0.1);
+    scene.options.level = 0;
+    ilsa_solver *solver = host_started(&scene, 0.7);
+    ilsa_model used;
+    assert_int_equal(ilsa_get_model(solver, &used), ILSA_OK);
+    assert_int_equal(used.level, ilsa_solver_def_default().level);
+    ilsa_solver_destroy(&solver);
+}
+
+/* A getter that fails says why to whoever asks, until another call of the thread fails. */
+static void message_of_a_getter_is_told_by_every_handle(void **state) {
+    (void)state;
+    host_scene scene = host_penny(0, 41, 0.1);
+    ilsa_solver *empty = host_solver(&scene), *full = host_started(&scene, 0.7);
+    const double *width;
+    assert_int_equal(ilsa_set_rate(empty, 0, -1), ILSA_ERR_VALUE);
+    check_message(ilsa_last_error(empty), "rate");
+    assert_int_equal(ilsa_get_width(empty, &width), ILSA_ERR_STATE);
+    const ilsa_solver *asked[] = {empty, full, NULL};
+    for (int k = 0; k < 3; k++) {
+        check_message(ilsa_last_error(asked[k]), "ilsa_start_radial");
+    }
+    assert_int_equal(ilsa_get_width(full, &width), ILSA_OK);
+    check_message(ilsa_last_error(full), "ilsa_start_radial");
+    assert_int_equal(ilsa_set_rate(full, 7, 1), ILSA_ERR_VALUE);
+    check_message(ilsa_last_error(full), "source = 7");
+    check_message(ilsa_last_error(empty), "rate");
+    ilsa_solver_destroy(&empty);
+    ilsa_solver_destroy(&full);
 }
 
 /* A stress that is too large is refused, and the one that was there stays. */
@@ -1052,6 +1086,8 @@ int main(void) {
         cmocka_unit_test(start_refuses_bad_input),
         cmocka_unit_test(start_survives_extreme_numbers),
         cmocka_unit_test(absurd_units_are_refused),
+        cmocka_unit_test(level_zero_is_the_default),
+        cmocka_unit_test(message_of_a_getter_is_told_by_every_handle),
         cmocka_unit_test(absurd_stress_is_refused),
         cmocka_unit_test(radius_and_time_of_a_start_agree),
         cmocka_unit_test(a_start_replaces_the_fracture),

@@ -1,6 +1,6 @@
 /* The physics of a step: what it must conserve, leave alone, mirror and scale. */
 #include "host.h"
-#include "step/state.h"
+#include "step/solver.h"
 #include "tip/stress_step.h"
 
 #include <math.h>
@@ -403,9 +403,9 @@ static void check_fold(host_scene scene, ilsa_symmetry symmetry, double allowed)
         assert_true(fabs(host_imbalance(folded)) <= 1e-12);
     }
     int about_x = symmetry != ILSA_SYMMETRY_Y, about_y = symmetry != ILSA_SYMMETRY_X;
-    ilsa_model model;
-    assert_int_equal(ilsa_get_model(folded, &model), ILSA_OK);
-    assert_int_equal(model.symmetry, symmetry);
+    ilsa_model used;
+    assert_int_equal(ilsa_get_model(folded, &used), ILSA_OK);
+    assert_int_equal(used.symmetry, symmetry);
     assert_true(mirrored_bits(&scene.mesh, host_width(folded), about_x, about_y));
     ilsa_summary a = host_summary(folded), b = host_summary(whole);
     int fold = symmetry == ILSA_SYMMETRY_XY ? 4 : 2;
@@ -475,9 +475,9 @@ static void a_quarter_unfolds(void **unused) {
             host_step(solver[k], dt);
             assert_true(fabs(host_imbalance(solver[k])) <= 1e-12);
         }
-        ilsa_model model;
-        assert_int_equal(ilsa_get_model(solver[0], &model), ILSA_OK);
-        assert_int_equal(model.symmetry, n < 4 ? ILSA_SYMMETRY_XY : ILSA_SYMMETRY_X);
+        ilsa_model used;
+        assert_int_equal(ilsa_get_model(solver[0], &used), ILSA_OK);
+        assert_int_equal(used.symmetry, n < 4 ? ILSA_SYMMETRY_XY : ILSA_SYMMETRY_X);
     }
     ilsa_summary a = host_summary(solver[0]), b = host_summary(solver[1]);
     double off = difference(host_width(solver[1]), host_width(solver[0]), cells_of(solver[1]));
@@ -693,7 +693,7 @@ static void suggestions_recover(void **unused) {
     ilsa_solver *solver = host_started(&scene, 0.9);
     host_steps(solver, 2);
     double whole = suggested(solver);
-    solver->now.dt_limit = 0.1 * whole;
+    solver->pace.dt_limit = 0.1 * whole;
     assert_true(suggested(solver) == 0.1 * whole);
     for (int k = 0; k < 7; k++)
         host_step(solver, suggested(solver));
