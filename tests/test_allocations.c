@@ -1,14 +1,8 @@
 /* Memory that steps ask for: none once the footprint's buffers are there, little while they grow.
  */
 #include "../bench/common_malloc.h"
+#include "check.h"
 #include "host.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 enum { STEPS = 100, GROWING = 40 };
 
