@@ -38,10 +38,11 @@ in_tree() {
     make -C "$tree" --no-print-directory ${JOBS:+-j$JOBS} WERROR= "$@"
 }
 
-# Runs the tests that are named; a mutant that loops or allocates for ever is stopped.
+# Runs the tests that are named; a mutant that loops or allocates for ever is stopped. The limit is
+# one that a test may raise, as tests/test_memory.c does.
 check() {
     (
-        ulimit -v 16000000
+        ulimit -S -v 16000000
         in_tree check SOME_TESTS="$1" TEST_TIMEOUT="$2"
     ) >"$scratch/check.log" 2>&1
 }
