@@ -1,12 +1,12 @@
 #include "base/thread_pool.h"
 
 #include "base/clock.h"
+#include "base/memory.h"
 #include <pthread.h>
 #include <sched.h>
 #include <signal.h>
 #include <stdatomic.h>
 #include <stdint.h>
-#include <stdlib.h>
 
 /* Parts of a loop per thread: uneven turns, and threads that come late, even out. */
 #define TEAM_PARTS 4
@@ -138,7 +138,7 @@ static int start_workers(thread_pool *t, int count) {
 
 thread_pool *ilsai_thread_pool_create(int threads) {
     size_t workers = (size_t)threads - 1;
-    thread_pool *t = calloc(1, sizeof *t + workers * sizeof *t->worker);
+    thread_pool *t = ilsai_allocate_zeroed(1, sizeof *t + workers * sizeof *t->worker);
     if (!t) {
         return NULL;
     }
@@ -147,12 +147,12 @@ thread_pool *ilsai_thread_pool_create(int threads) {
     atomic_init(&t->asleep, 0);
     atomic_init(&t->ending, 0);
     if (pthread_mutex_init(&t->lock, NULL)) {
-        free(t);
+        ilsai_release(t);
         return NULL;
     }
     if (pthread_cond_init(&t->news, NULL)) {
         pthread_mutex_destroy(&t->lock);
-        free(t);
+        ilsai_release(t);
         return NULL;
     }
     if (start_workers(t, (int)workers) != 0) {
@@ -172,7 +172,7 @@ void ilsai_thread_pool_destroy(thread_pool **t) {
     }
     pthread_cond_destroy(&(*t)->news);
     pthread_mutex_destroy(&(*t)->lock);
-    free(*t);
+    ilsai_release(*t);
     *t = NULL;
 }
 

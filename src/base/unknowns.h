@@ -15,7 +15,8 @@ enum {
 };
 
 typedef struct unknowns {
-    int count, capacity;
+    int count;
+    size_t capacity;
     int *cell;              /* mesh index of each */
     unsigned char *unknown; /* when set: UNKNOWN_PRESSURE in tip cells, elsewhere UNKNOWN_WIDTH */
     int *neighbour;         /* GRID_FACES per cell: number of the numbered cell there, or -1 */

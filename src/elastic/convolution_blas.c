@@ -1,8 +1,8 @@
 #include "elastic/convolution_blas.h"
 
+#include "base/memory.h"
 #include <cblas.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /*
@@ -34,7 +34,7 @@ struct dft {
 };
 
 static double *alloc_doubles(size_t rows, size_t columns) {
-    return malloc(rows * columns * sizeof(double));
+    return ilsai_allocate(rows * columns, sizeof(double));
 }
 
 /* pi n / (2 c), less whole turns. */
@@ -118,9 +118,9 @@ static int make_spectrum(dft *d, const double *kernel) {
             for (int k = 0; k <= cx; k++)
                 *value++ *= wave_weight(k, cx) * wave_weight(l, cy);
     }
-    free(ax);
-    free(ay);
-    free(half);
+    ilsai_release(ax);
+    ilsai_release(ay);
+    ilsai_release(half);
     return good;
 }
 
@@ -135,7 +135,7 @@ static int allocate(dft *d) {
 
 dft *ilsai_dft_create(int cx, int cy, mirror_axis about_x, mirror_axis about_y,
                       const double *kernel) {
-    dft *d = calloc(1, sizeof *d);
+    dft *d = ilsai_allocate_zeroed(1, sizeof *d);
     if (!d)
         return NULL;
     if (!basis_create(&d->x, cx, about_x) || !basis_create(&d->y, cy, about_y) || !allocate(d) ||
@@ -147,13 +147,13 @@ dft *ilsai_dft_create(int cx, int cy, mirror_axis about_x, mirror_axis about_y,
 void ilsai_dft_destroy(dft **d) {
     if (!*d)
         return;
-    free((*d)->x.matrix);
-    free((*d)->y.matrix);
-    free((*d)->spectrum);
-    free((*d)->folded);
-    free((*d)->half_way);
-    free((*d)->waves);
-    free(*d);
+    ilsai_release((*d)->x.matrix);
+    ilsai_release((*d)->y.matrix);
+    ilsai_release((*d)->spectrum);
+    ilsai_release((*d)->folded);
+    ilsai_release((*d)->half_way);
+    ilsai_release((*d)->waves);
+    ilsai_release(*d);
     *d = NULL;
 }
 

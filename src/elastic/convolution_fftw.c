@@ -1,7 +1,7 @@
 #include "elastic/convolution.h"
 
+#include "base/memory.h"
 #include <fftw3.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Rows or columns that are transformed at a time, whoever does it: the bits depend on it. */
@@ -129,9 +129,9 @@ static int plan_batch(fft *f, batch *b, fftw_plan (*make)(fft *f, int count, int
 
 static int planner_has_memory(const fft *f) {
     size_t points = 2 * ((size_t)f->cx + (size_t)f->cy);
-    void *volatile room = malloc(FFT_PLANNER_BYTES + FFT_PLANNER_BYTES_A_POINT * points);
+    void *volatile room = ilsai_allocate(FFT_PLANNER_BYTES + FFT_PLANNER_BYTES_A_POINT * points, 1);
     int there = room != NULL;
-    free(room);
+    ilsai_release(room);
     return there;
 }
 
@@ -317,7 +317,7 @@ static void make_spectrum(fft *f, const double *kernel) {
 
 fft *ilsai_fft_create(int cx, int cy, mirror_axis about_x, mirror_axis about_y,
                       const double *kernel) {
-    fft *f = calloc(1, sizeof *f);
+    fft *f = ilsai_allocate_zeroed(1, sizeof *f);
     if (!f)
         return NULL;
     if (cy > cx)
@@ -351,7 +351,7 @@ void ilsai_fft_destroy(fft **f) {
     fftw_free((*f)->half);
     fftw_free((*f)->full);
     fftw_free((*f)->spectrum);
-    free(*f);
+    ilsai_release(*f);
     *f = NULL;
 }
 

@@ -2,6 +2,8 @@
 #include "elastic/convolution.h"
 #include "elastic/convolution_blas.h"
 
+#include "base/error.h"
+#include "base/memory.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -90,7 +92,7 @@ static int capacity(int b) {
 }
 
 static double *make_table(const elasticity *e, size_t columns, size_t rows) {
-    double *table = malloc(columns * rows * sizeof *table);
+    double *table = ilsai_allocate(columns * rows, sizeof *table);
     if (!table)
         return NULL;
     for (size_t j = 0; j < rows; j++)
@@ -102,7 +104,7 @@ static double *make_table(const elasticity *e, size_t columns, size_t rows) {
 static void engine_destroy(engine *n) {
     ilsai_fft_destroy(&n->by_fft);
     ilsai_dft_destroy(&n->by_blas);
-    free(n->table);
+    ilsai_release(n->table);
     *n = (engine){0};
 }
 
@@ -135,7 +137,7 @@ ilsa_status ilsai_elasticity_create(double E_prime, double dx, double dy, ilsa_p
     *e = NULL;
     if (method == ILSA_PRODUCT_FFT && !ilsai_fft_available())
         return ILSA_ERR_MISMATCH;
-    elasticity *made = calloc(1, sizeof *made);
+    elasticity *made = ilsai_allocate_zeroed(1, sizeof *made);
     if (!made)
         return ILSA_ERR_MEMORY;
     made->E_prime = E_prime;
@@ -150,7 +152,7 @@ void ilsai_elasticity_destroy(elasticity **e) {
     if (!*e)
         return;
     engine_destroy(&(*e)->engine);
-    free(*e);
+    ilsai_release(*e);
     *e = NULL;
 }
 
@@ -158,9 +160,7 @@ ilsa_status ilsai_elasticity_set_box(elasticity *e, int bx, int by, mirror_axis 
                                      mirror_axis about_y) {
     engine made = {.cx = capacity(bx), .cy = capacity(by), .about_x = about_x, .about_y = about_y};
     if (!serves(&e->engine, &made)) {
-        ilsa_status status = engine_create(e, &made);
-        if (status)
-            return status;
+        ILSAI_TRY(engine_create(e, &made));
         engine_destroy(&e->engine);
         e->engine = made;
     }

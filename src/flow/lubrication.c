@@ -1,27 +1,17 @@
 #include "flow/lubrication.h"
 
+#include "base/memory.h"
 #include "base/tuning.h"
-#include <stdlib.h>
 
 ilsa_status ilsai_lubrication_reserve(lubrication *f, int count) {
-    if (count <= f->capacity) {
-        return ILSA_OK;
-    }
-    size_t capacity = (size_t)count + (size_t)count / 2 + 64;
-    double *conductance = realloc(f->conductance, GRID_FACES * capacity * sizeof *conductance);
-    f->conductance = conductance ? conductance : f->conductance;
-    double *slope = realloc(f->slope, GRID_FACES * capacity * sizeof *slope);
-    f->slope = slope ? slope : f->slope;
-    if (!conductance || !slope) {
-        return ILSA_ERR_MEMORY;
-    }
-    f->capacity = (int)capacity;
-    return ILSA_OK;
+    const grown_array arrays[] = {ILSAI_GROWN(f->conductance), ILSAI_GROWN(f->slope)};
+    return ilsai_grow(GRID_FACES * (size_t)count, &f->capacity, arrays,
+                      sizeof arrays / sizeof *arrays);
 }
 
 void ilsai_lubrication_destroy(lubrication *f) {
-    free(f->conductance);
-    free(f->slope);
+    ilsai_release(f->conductance);
+    ilsai_release(f->slope);
 }
 
 /* What the loops over the numbered cells need. */

@@ -7,9 +7,9 @@
 
 /* Per numbered cell and face; 0 where there is no numbered cell across, so that no fluid passes. */
 typedef struct lubrication {
-    double *conductance; /* dt w^3 / (mu' h^2): width gained per pressure difference */
-    double *slope;       /* derivative of that face's gain by the width of either cell */
-    int capacity;
+    double *conductance;  /* dt w^3 / (mu' h^2): width gained per pressure difference */
+    double *slope;        /* derivative of that face's gain by the width of either cell */
+    size_t capacity;      /* of both arrays: faces */
     thread_pool *threads; /* that share the loops, or NULL */
 } lubrication;
 

@@ -1,12 +1,12 @@
 #include "solve/coupled.h"
 
 #include "base/clock.h"
+#include "base/error.h"
+#include "base/memory.h"
 #include "base/tuning.h"
 #include "solve/gmres.h"
 #include "solve/jacobian.h"
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 struct coupled {
     unknowns cells;
@@ -18,22 +18,21 @@ struct coupled {
     double *front_pressure;   /* change of the pressures there for the front's move in this solve */
     double *closing_pressure; /* of closed cells: the pressure with which they closed or entered the
                                  solve */
-    double *stress; /* of channel cells: the pressure that holds them at their width, (4.7) */
-    int capacity;
-    int sensitivity_capacity;
+    double *stress;  /* of channel cells: the pressure that holds them at their width, (4.7) */
+    size_t capacity; /* numbered cells that the arrays over them have room for */
     int closed;      /* cells that are closed or drain */
     double residual; /* of the last linear solve, relative */
 };
 
 coupled *ilsai_coupled_create(const ilsa_mesh_def *mesh) {
-    coupled *c = calloc(1, sizeof *c);
+    coupled *c = ilsai_allocate_zeroed(1, sizeof *c);
     if (!c) {
         return NULL;
     }
     size_t mesh_cells = (size_t)mesh->nx * (size_t)mesh->ny;
     c->krylov = ilsai_gmres_create(ILSAI_GMRES_RESTART);
-    c->matrix.width = calloc(mesh_cells, sizeof(double));
-    c->matrix.pressure = calloc(mesh_cells, sizeof(double));
+    c->matrix.width = ilsai_allocate_zeroed(mesh_cells, sizeof(double));
+    c->matrix.pressure = ilsai_allocate_zeroed(mesh_cells, sizeof(double));
     if (ilsai_unknowns_create(&c->cells, mesh) != ILSA_OK || !c->krylov || !c->matrix.width ||
         !c->matrix.pressure) {
         ilsai_coupled_destroy(&c);
@@ -47,13 +46,13 @@ void ilsai_coupled_destroy(coupled **c) {
         ilsai_lubrication_destroy(&(*c)->fluid);
         ilsai_jacobian_destroy(&(*c)->matrix);
         ilsai_gmres_destroy(&(*c)->krylov);
-        free((*c)->rhs);
-        free((*c)->step);
-        free((*c)->source_change);
-        free((*c)->front_pressure);
-        free((*c)->stress);
-        free((*c)->closing_pressure);
-        free(*c);
+        ilsai_release((*c)->rhs);
+        ilsai_release((*c)->step);
+        ilsai_release((*c)->source_change);
+        ilsai_release((*c)->front_pressure);
+        ilsai_release((*c)->stress);
+        ilsai_release((*c)->closing_pressure);
+        ilsai_release(*c);
         *c = NULL;
     }
 }
@@ -63,27 +62,17 @@ int ilsai_coupled_unknowns(const coupled *c) {
 }
 
 static ilsa_status reserve(coupled *c, int count) {
-    if (ilsai_lubrication_reserve(&c->fluid, count) != ILSA_OK ||
-        ilsai_gmres_reserve(c->krylov, (size_t)count) != ILSA_OK) {
-        return ILSA_ERR_MEMORY;
-    }
-    double **arrays[] = {&c->rhs,
-                         &c->step,
-                         &c->source_change,
-                         &c->front_pressure,
-                         &c->stress,
-                         &c->closing_pressure,
-                         &c->matrix.self_correction};
-    size_t capacity = (size_t)count + (size_t)count / 2 + 64;
-    for (size_t k = 0; count > c->capacity && k < sizeof arrays / sizeof *arrays; k++) {
-        double *fresh = realloc(*arrays[k], capacity * sizeof *fresh);
-        if (!fresh) {
-            return ILSA_ERR_MEMORY;
-        }
-        *arrays[k] = fresh;
-    }
-    c->capacity = count > c->capacity ? (int)capacity : c->capacity;
-    return ILSA_OK;
+    const grown_array arrays[] = {ILSAI_GROWN(c->rhs),
+                                  ILSAI_GROWN(c->step),
+                                  ILSAI_GROWN(c->source_change),
+                                  ILSAI_GROWN(c->front_pressure),
+                                  ILSAI_GROWN(c->stress),
+                                  ILSAI_GROWN(c->closing_pressure),
+                                  ILSAI_GROWN(c->matrix.self_correction),
+                                  ILSAI_GROWN(c->matrix.sensitivity_of)};
+    ILSAI_TRY(ilsai_lubrication_reserve(&c->fluid, count));
+    ILSAI_TRY(ilsai_gmres_reserve(c->krylov, (size_t)count));
+    return ilsai_grow((size_t)count, &c->capacity, arrays, sizeof arrays / sizeof *arrays);
 }
 
 static contact contact_of(coupled *c, const coupled_problem *problem, int late) {
@@ -160,10 +149,7 @@ static void set_rhs(coupled *c, const coupled_problem *problem) {
 }
 
 static ilsa_status solve_iterative(coupled *c, coupled_counts *counts) {
-    ilsa_status status = ilsai_jacobian_set_preconditioner(&c->matrix);
-    if (status != ILSA_OK) {
-        return status;
-    }
+    ILSAI_TRY(ilsai_jacobian_set_preconditioner(&c->matrix));
     gmres_result result = ilsai_gmres_solve(
         c->krylov, (size_t)c->cells.count, ilsai_jacobian_multiply, ilsai_jacobian_precondition,
         &c->matrix, c->rhs, c->step, c->closed > 0 ? ILSAI_GMRES_CONTACT : ILSAI_GMRES_TOLERANCE,
@@ -332,10 +318,7 @@ static ilsa_status newton(coupled *c, const coupled_problem *problem, coupled_co
         if (made.switched > 0 && problem->contact.state) {
             hold_opening(c, problem);
         }
-        ilsa_status status = solve_linear(c, dense, made.switched, counts);
-        if (status != ILSA_OK) {
-            return status;
-        }
+        ILSAI_TRY(solve_linear(c, dense, made.switched, counts));
         double length = step_length(c, problem);
         made = take_step(c, problem, length, late);
         if (isnan(made.change)) {
@@ -350,16 +333,7 @@ static ilsa_status newton(coupled *c, const coupled_problem *problem, coupled_co
 }
 
 /* Which numbered cell has which sensitivity. */
-static ilsa_status find_sensitivities(coupled *c, const coupled_problem *problem) {
-    if (c->cells.count > c->sensitivity_capacity) {
-        size_t capacity = (size_t)c->cells.count + (size_t)c->cells.count / 2 + 64;
-        int *fresh = realloc(c->matrix.sensitivity_of, capacity * sizeof *fresh);
-        if (!fresh) {
-            return ILSA_ERR_MEMORY;
-        }
-        c->matrix.sensitivity_of = fresh;
-        c->sensitivity_capacity = (int)capacity;
-    }
+static void find_sensitivities(coupled *c, const coupled_problem *problem) {
     for (int k = 0; k < c->cells.count; k++) {
         c->matrix.sensitivity_of[k] = -1;
         c->source_change[k] = c->front_pressure[k] = 0;
@@ -372,7 +346,6 @@ static ilsa_status find_sensitivities(coupled *c, const coupled_problem *problem
             c->matrix.sensitivity_of[k] = r;
         }
     }
-    return ILSA_OK;
 }
 
 static ilsa_status set_box(const coupled_problem *problem) {
@@ -385,22 +358,15 @@ static ilsa_status set_box(const coupled_problem *problem) {
 
 ilsa_status ilsai_coupled_solve(coupled *c, const coupled_problem *problem,
                                 coupled_counts *counts) {
-    ilsa_status status =
-        ilsai_unknowns_set(&c->cells, problem->g, &problem->footprint, problem->kind);
-    if (status != ILSA_OK || reserve(c, c->cells.count) != ILSA_OK) {
-        return ILSA_ERR_MEMORY;
-    }
-    if (set_box(problem) != ILSA_OK) {
-        return ILSA_ERR_MEMORY;
-    }
+    ILSAI_TRY(ilsai_unknowns_set(&c->cells, problem->g, &problem->footprint, problem->kind));
+    ILSAI_TRY(reserve(c, c->cells.count));
+    ILSAI_TRY(set_box(problem));
     c->matrix.g = problem->g;
     c->matrix.a = &c->cells;
     c->matrix.f = &c->fluid;
     c->matrix.e = problem->e;
     c->matrix.sensitivity = problem->sensitivity_count > 0 ? problem->sensitivity : NULL;
-    if (find_sensitivities(c, problem) != ILSA_OK) {
-        return ILSA_ERR_MEMORY;
-    }
+    find_sensitivities(c, problem);
     if (problem->contact.state) {
         contact faces = contact_of(c, problem, 0);
         ilsai_contact_begin(&faces);
@@ -409,7 +375,7 @@ ilsa_status ilsai_coupled_solve(coupled *c, const coupled_problem *problem,
     ilsai_elasticity_share(problem->e, problem->threads);
     c->matrix.products = 0;
     c->matrix.seconds_product = c->matrix.seconds_preconditioner = 0;
-    status = newton(c, problem, counts);
+    ilsa_status status = newton(c, problem, counts);
     counts->products += c->matrix.products;
     counts->seconds_product += c->matrix.seconds_product;
     counts->seconds_preconditioner += c->matrix.seconds_preconditioner;

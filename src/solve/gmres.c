@@ -1,14 +1,14 @@
 #include "solve/gmres.h"
 
+#include "base/memory.h"
 #include <cblas.h>
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 struct gmres {
     int restart;
-    size_t room;        /* unknowns there is room for */
+    size_t capacity;    /* unknowns that there is room for */
     double *basis;      /* restart + 1 vectors: orthonormal basis of the Krylov space */
     double *vector;     /* 2 vectors of work */
     double *hessenberg; /* column k at k (restart + 1): upper triangle after the rotations */
@@ -24,12 +24,12 @@ typedef struct krylov {
 } krylov;
 
 gmres *ilsai_gmres_create(int restart) {
-    gmres *g = calloc(1, sizeof *g);
+    gmres *g = ilsai_allocate_zeroed(1, sizeof *g);
     size_t m = (size_t)restart;
-    double *small = malloc(((m + 1) * m + 4 * (m + 1)) * sizeof *small);
+    double *small = ilsai_allocate((m + 1) * m + 4 * (m + 1), sizeof *small);
     if (!g || !small) {
-        free(g);
-        free(small);
+        ilsai_release(g);
+        ilsai_release(small);
         return NULL;
     }
     g->restart = restart;
@@ -44,32 +44,17 @@ gmres *ilsai_gmres_create(int restart) {
 void ilsai_gmres_destroy(gmres **g) {
     if (!*g)
         return;
-    free((*g)->basis);
-    free((*g)->vector);
-    free((*g)->hessenberg);
-    free(*g);
+    ilsai_release((*g)->basis);
+    ilsai_release((*g)->vector);
+    ilsai_release((*g)->hessenberg);
+    ilsai_release(*g);
     *g = NULL;
 }
 
 ilsa_status ilsai_gmres_reserve(gmres *g, size_t n) {
-    if (n <= g->room)
-        return ILSA_OK;
-    size_t room = g->room + g->room / 2;
-    if (room < n)
-        room = n;
-    double *basis = malloc(((size_t)g->restart + 1) * room * sizeof *basis);
-    double *vector = malloc(2 * room * sizeof *vector);
-    if (!basis || !vector) {
-        free(basis);
-        free(vector);
-        return ILSA_ERR_MEMORY;
-    }
-    free(g->basis);
-    free(g->vector);
-    g->basis = basis;
-    g->vector = vector;
-    g->room = room;
-    return ILSA_OK;
+    const grown_array arrays[] = {{&g->basis, ((size_t)g->restart + 1) * sizeof *g->basis},
+                                  {&g->vector, 2 * sizeof *g->vector}};
+    return ilsai_grow(n, &g->capacity, arrays, sizeof arrays / sizeof *arrays);
 }
 
 /* The plain sum of squares is several times faster than dnrm2, which serves where it fails. */

@@ -1,12 +1,13 @@
 #include "solve/jacobian.h"
 
 #include "base/clock.h"
+#include "base/error.h"
+#include "base/memory.h"
 #include "base/tuning.h"
 #include <cblas.h>
 #include <ilsa/solver.h>
 #include <lapacke.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /*
@@ -21,15 +22,15 @@
 #define JACOBIAN_STIFF 1e6
 
 void ilsai_jacobian_destroy(jacobian *m) {
-    free(m->width);
-    free(m->pressure);
-    free(m->full);
-    free(m->influence);
-    free(m->pivots);
-    free(m->sensitivity_of);
-    free(m->self_correction);
-    free(m->place);
-    free(m->weight);
+    ilsai_release(m->width);
+    ilsai_release(m->pressure);
+    ilsai_release(m->full);
+    ilsai_release(m->influence);
+    ilsai_release(m->pivots);
+    ilsai_release(m->sensitivity_of);
+    ilsai_release(m->self_correction);
+    ilsai_release(m->place);
+    ilsai_release(m->weight);
     ilsai_multigrid_destroy(&m->pressures);
     ilsai_near_field_destroy(&m->widths);
     memset(m, 0, sizeof *m);
@@ -179,56 +180,11 @@ static double corrected_self(const jacobian *m, int k) {
     return sum;
 }
 
-static ilsa_status reserve(double **array, size_t *capacity, size_t size) {
-    if (size > *capacity) {
-        size_t grown = size + size / 2;
-        double *fresh = malloc(grown * sizeof *fresh);
-        if (!fresh) {
-            return ILSA_ERR_MEMORY;
-        }
-        free(*array);
-        *array = fresh;
-        *capacity = grown;
-    }
-    return ILSA_OK;
-}
-
-static ilsa_status reserve_pivots(jacobian *m) {
-    size_t size = (size_t)m->a->count;
-    if (size > m->pivot_capacity) {
-        size_t grown = size + size / 2;
-        int *fresh = malloc(grown * sizeof *fresh);
-        if (!fresh) {
-            return ILSA_ERR_MEMORY;
-        }
-        free(m->pivots);
-        m->pivots = fresh;
-        m->pivot_capacity = grown;
-    }
-    return ILSA_OK;
-}
-
 /* ---- Preconditioner ----------------------------------------------------------------------- */
 
 /* The part of a cell on the axis of a folded scene, of its faces across, that is in the fold. */
 static double half_on_axis(int mirror, int count, int at, int first) {
     return mirror && count % 2 && at == first ? 0.5 : 1;
-}
-
-static ilsa_status reserve_places(jacobian *m) {
-    size_t count = (size_t)m->a->count;
-    if (count > m->place_capacity) {
-        size_t grown = count + count / 2;
-        size_t *place = realloc(m->place, grown * sizeof *place);
-        m->place = place ? place : m->place;
-        double *weight = realloc(m->weight, grown * sizeof *weight);
-        m->weight = weight ? weight : m->weight;
-        if (!place || !weight) {
-            return ILSA_ERR_MEMORY;
-        }
-        m->place_capacity = grown;
-    }
-    return ILSA_OK;
 }
 
 /* Places and weights of the numbered cells on the rectangle of the preconditioner. */
@@ -297,10 +253,11 @@ ilsa_status ilsai_jacobian_set_preconditioner(jacobian *m) {
     box part = ilsai_box_fold(m->g, &m->a->footprint);
     int nx = (int)ilsai_box_columns(&part), ny = (int)ilsai_box_rows(&part);
     m->pressures.threads = m->widths.threads = m->threads;
-    if (reserve_places(m) != ILSA_OK || ilsai_multigrid_shape(&m->pressures, nx, ny) != ILSA_OK ||
-        ilsai_near_field_shape(&m->widths, nx, ny) != ILSA_OK) {
-        return ILSA_ERR_MEMORY;
-    }
+    const grown_array arrays[] = {ILSAI_GROWN(m->place), ILSAI_GROWN(m->weight)};
+    ILSAI_TRY(ilsai_grow((size_t)m->a->count, &m->place_capacity, arrays,
+                         sizeof arrays / sizeof *arrays));
+    ILSAI_TRY(ilsai_multigrid_shape(&m->pressures, nx, ny));
+    ILSAI_TRY(ilsai_near_field_shape(&m->widths, nx, ny));
     share_cells(place_cells, m, NULL, NULL);
     share_cells(set_flow, m, NULL, NULL);
     ilsai_multigrid_build(&m->pressures);
@@ -414,12 +371,11 @@ static void fill_influence_row(jacobian *m, int row, double *out) {
 
 ilsa_status ilsai_jacobian_set_influence(jacobian *m) {
     double start = ilsai_clock();
-    size_t n = (size_t)m->a->count, capacity = m->full_capacity;
-    if (reserve(&m->full, &capacity, n * n) != ILSA_OK ||
-        reserve(&m->influence, &m->full_capacity, n * n) != ILSA_OK ||
-        reserve_pivots(m) != ILSA_OK) {
-        return ILSA_ERR_MEMORY;
-    }
+    size_t n = (size_t)m->a->count;
+    const grown_array squares[] = {ILSAI_GROWN(m->full), ILSAI_GROWN(m->influence)};
+    const grown_array pivots = ILSAI_GROWN(m->pivots);
+    ILSAI_TRY(ilsai_grow(n * n, &m->full_capacity, squares, sizeof squares / sizeof *squares));
+    ILSAI_TRY(ilsai_grow(n, &m->pivot_capacity, &pivots, 1));
     for (size_t row = 0; row < n; row++) {
         fill_influence_row(m, (int)row, m->influence + row * n);
     }

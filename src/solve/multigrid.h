@@ -32,7 +32,7 @@ typedef struct multigrid {
     int levels;
     double *pool;
     int *maps;
-    size_t room, map_room;
+    size_t pool_capacity, maps_capacity;
     thread_pool *threads; /* that share the loops, or NULL */
 } multigrid;
 

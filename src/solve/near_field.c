@@ -1,8 +1,9 @@
 #include "solve/near_field.h"
 
+#include "base/error.h"
+#include "base/memory.h"
 #include "base/tuning.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Steps of the iteration: one more takes the error down by 2.4 on square cells. */
@@ -14,22 +15,14 @@
 enum { NEARFIELD_ARRAYS = 5 };
 
 void ilsai_near_field_destroy(near_field *f) {
-    free(f->extra);
+    ilsai_release(f->extra);
     memset(f, 0, sizeof *f);
 }
 
 ilsa_status ilsai_near_field_shape(near_field *f, int nx, int ny) {
     size_t size = ((size_t)nx + 2) * ((size_t)ny + 2);
-    if (size > f->room) {
-        size_t room = size + size / 2;
-        double *pool = malloc(NEARFIELD_ARRAYS * room * sizeof *pool);
-        if (!pool) {
-            return ILSA_ERR_MEMORY;
-        }
-        free(f->extra);
-        f->extra = pool;
-        f->room = room;
-    }
+    const grown_array pool = {&f->extra, NEARFIELD_ARRAYS * sizeof *f->extra};
+    ILSAI_TRY(ilsai_grow(size, &f->capacity, &pool, 1));
     f->nx = nx;
     f->ny = ny;
     f->stride = nx + 2;

@@ -18,7 +18,7 @@ typedef struct near_field {
     double *open;                       /* 1 in the cells that take part, 0 elsewhere */
     double *x, *y;                      /* widths out, pressures in; y is overwritten */
     double *step;
-    size_t room;
+    size_t capacity;      /* cells, the border included, that there is room for */
     thread_pool *threads; /* that share the loops, or NULL */
 } near_field;
 
