@@ -136,8 +136,9 @@ static int planner_has_memory(const fft *f) {
 }
 
 static int plan(fft *f) {
-    if (!planner_has_memory(f))
+    if (!planner_has_memory(f)) {
         return 0;
+    }
     make_planner_safe();
     return plan_batch(f, &f->rows_there, plan_rows, f->cy, 0) &&
            plan_batch(f, &f->columns_there, plan_columns, f->cx + 1, 0) &&
@@ -195,8 +196,9 @@ static steps steps_of(const fft *f, size_t stride) {
 }
 
 static void gather(double *row, const double *from, size_t step, size_t count) {
-    for (size_t i = 0; i < count; i++)
+    for (size_t i = 0; i < count; i++) {
         row[i] = from[i * step];
+    }
 }
 
 /*
@@ -213,8 +215,9 @@ static void lay_out_kernel_row(const fft *f, const double *kernel, size_t step, 
     }
     gather(row, kernel, step, cx);
     row[cx] = 0;
-    for (size_t i = 1; i < cx; i++)
+    for (size_t i = 1; i < cx; i++) {
         row[mx - i] = row[i];
+    }
 }
 
 /* Transforms cy rows of the kernel, row `first` and those that follow, into the upper half. */
@@ -225,13 +228,15 @@ static void transform_kernel_rows(fft *f, const double *kernel, size_t first, in
     steps at = steps_of(f, f->turned ? end : columns);
     for (size_t j = 0; j < cy; j++) {
         double *row = f->rows + j * mx;
-        if (first + j < end)
+        if (first + j < end) {
             lay_out_kernel_row(f, kernel + (first + j) * at.y, at.x, one_sided, row);
-        else
+        } else {
             memset(row, 0, mx * sizeof *row);
+        }
     }
-    for (int part = 0; part < parts_of(f->cy); part++)
+    for (int part = 0; part < parts_of(f->cy); part++) {
         rows_there(f, part);
+    }
 }
 
 /* The spectrum of the kernel into `full`, one-sided in x, in y, or not. */
@@ -246,11 +251,13 @@ static void transform_kernel(fft *f, const double *kernel, int one_sided_x, int 
     transform_kernel_rows(f, kernel, first, one_sided_x);
     if (!one_sided_y) {
         memset(lower, 0, h * sizeof *lower);
-        for (size_t j = 1; j < cy; j++)
+        for (size_t j = 1; j < cy; j++) {
             memcpy(f->half + (2 * cy - j) * h, f->half + j * h, h * sizeof *lower);
+        }
     }
-    for (int part = 0; part < parts_of(f->cx + 1); part++)
+    for (int part = 0; part < parts_of(f->cx + 1); part++) {
         columns_there(f, part);
+    }
 }
 
 /*
@@ -307,23 +314,27 @@ static void make_spectrum(fft *f, const double *kernel) {
     size_t count = ((size_t)f->cy + 1) * (size_t)f->terms * half_length(f);
     memset(f->spectrum, 0, count * sizeof *f->spectrum);
     int last_x = f->about_x == MIRROR_NONE ? 0 : 1, last_y = f->about_y == MIRROR_NONE ? 0 : 1;
-    for (int y = 0; y <= last_y; y++)
+    for (int y = 0; y <= last_y; y++) {
         for (int x = 0; x <= last_x; x++) {
             transform_kernel(f, kernel, x, y);
-            for (size_t l = 0; l <= (size_t)f->cy; l++)
+            for (size_t l = 0; l <= (size_t)f->cy; l++) {
                 add_spectrum_row(f, x, y, l);
+            }
         }
+    }
 }
 
 fft *ilsai_fft_create(int cx, int cy, mirror_axis about_x, mirror_axis about_y,
                       const double *kernel) {
     fft *f = ilsai_allocate_zeroed(1, sizeof *f);
-    if (!f)
+    if (!f) {
         return NULL;
-    if (cy > cx)
+    }
+    if (cy > cx) {
         *f = (fft){.turned = 1, .cx = cy, .cy = cx, .about_x = about_y, .about_y = about_x};
-    else
+    } else {
         *f = (fft){.cx = cx, .cy = cy, .about_x = about_x, .about_y = about_y};
+    }
     f->terms = terms_of(about_x, about_y);
     if (!allocate(f) || !plan(f)) {
         ilsai_fft_destroy(&f);
@@ -334,15 +345,18 @@ fft *ilsai_fft_create(int cx, int cy, mirror_axis about_x, mirror_axis about_y,
 }
 
 static void destroy_batch(batch *b) {
-    if (b->part)
+    if (b->part) {
         fftw_destroy_plan(b->part);
-    if (b->rest)
+    }
+    if (b->rest) {
         fftw_destroy_plan(b->rest);
+    }
 }
 
 void ilsai_fft_destroy(fft **f) {
-    if (!*f)
+    if (!*f) {
         return;
+    }
     destroy_batch(&(*f)->rows_there);
     destroy_batch(&(*f)->columns_there);
     destroy_batch(&(*f)->columns_back);
@@ -375,10 +389,12 @@ static void lay_out_rows(const product *c, size_t first, size_t end) {
         size_t filled = j < c->by ? c->bx : 0;
         gather(row, c->w + j * c->at.y, c->at.x, filled);
         memset(row + filled, 0, (mx - filled) * sizeof *row);
-        if (c->f->about_x == MIRROR_CENTRE)
+        if (c->f->about_x == MIRROR_CENTRE) {
             row[0] *= 0.5;
-        for (size_t i = 0; i < filled && j == 0 && c->f->about_y == MIRROR_CENTRE; i++)
+        }
+        for (size_t i = 0; i < filled && j == 0 && c->f->about_y == MIRROR_CENTRE; i++) {
             row[i] *= 0.5;
+        }
     }
 }
 
@@ -456,16 +472,18 @@ static multiply_rows *multiplication(const fft *f) {
 static void multiply_by_spectrum(fft *f, size_t first, size_t end) {
     size_t cy = (size_t)f->cy, h = half_length(f), columns = end - first;
     multiply_rows *multiply = multiplication(f);
-    for (size_t l = 0; l <= cy; l++)
+    for (size_t l = 0; l <= cy; l++) {
         multiply(spectrum_row(f, first, columns, l), columns, f->full + l * h + first,
                  f->full + (l ? 2 * cy - l : 0) * h + first);
+    }
 }
 
 /* Zeros into the lower half of columns first .. end - 1. */
 static void clear_lower_part(fft *f, size_t first, size_t end) {
     size_t cy = (size_t)f->cy, h = half_length(f);
-    for (size_t j = cy; j < 2 * cy; j++)
+    for (size_t j = cy; j < 2 * cy; j++) {
         memset(f->half + j * h + first, 0, (end - first) * sizeof *f->half);
+    }
 }
 
 static void convolve_columns(void *context, int first, int end) {
@@ -480,8 +498,9 @@ static void convolve_columns(void *context, int first, int end) {
 }
 
 static void scatter(double *to, size_t step, const double *row, size_t count) {
-    for (size_t i = 0; i < count; i++)
+    for (size_t i = 0; i < count; i++) {
         to[i * step] = row[i];
+    }
 }
 
 static void transform_back(void *context, int first, int end) {
@@ -489,8 +508,9 @@ static void transform_back(void *context, int first, int end) {
     for (int part = first; part < end; part++) {
         rows_back(c->f, part);
         size_t last = end_of_part(part, (int)c->by);
-        for (size_t j = (size_t)part * FFT_PART; j < last; j++)
+        for (size_t j = (size_t)part * FFT_PART; j < last; j++) {
             scatter(c->p + j * c->at.y, c->at.x, c->f->rows + j * row_length(c->f), c->bx);
+        }
     }
 }
 

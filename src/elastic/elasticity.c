@@ -50,8 +50,9 @@ double ilsai_kernel(long i, long j, double dx, double dy) {
         dy = swap;
     }
     double r = dy / dx;
-    if (m == 0)
+    if (m == 0) {
         return sqrt(1 + r * r) / (pi * r) / dx;
+    }
     return (n == 0 ? kernel_on_axis(m, r) : kernel_off_axis(m, n, r)) / dx;
 }
 
@@ -83,21 +84,26 @@ struct elasticity {
  */
 static int capacity(int b) {
     int unit = 2;
-    while (7 * unit < b)
+    while (7 * unit < b) {
         unit *= 2;
+    }
     int c = 4;
-    while (c * unit < b)
+    while (c * unit < b) {
         c++;
+    }
     return c * unit;
 }
 
 static double *make_table(const elasticity *e, size_t columns, size_t rows) {
     double *table = ilsai_allocate(columns * rows, sizeof *table);
-    if (!table)
+    if (!table) {
         return NULL;
-    for (size_t j = 0; j < rows; j++)
-        for (size_t i = 0; i < columns; i++)
+    }
+    for (size_t j = 0; j < rows; j++) {
+        for (size_t i = 0; i < columns; i++) {
             table[j * columns + i] = e->E_prime * ilsai_kernel((long)i, (long)j, e->dx, e->dy);
+        }
+    }
     return table;
 }
 
@@ -112,10 +118,11 @@ static void engine_destroy(engine *n) {
 static ilsa_status engine_create(const elasticity *e, engine *n) {
     n->row = (size_t)ilsai_mirror_offsets(n->about_x, n->cx);
     n->table = make_table(e, n->row, (size_t)ilsai_mirror_offsets(n->about_y, n->cy));
-    if (n->table && e->use_fft)
+    if (n->table && e->use_fft) {
         n->by_fft = ilsai_fft_create(n->cx, n->cy, n->about_x, n->about_y, n->table);
-    else if (n->table)
+    } else if (n->table) {
         n->by_blas = ilsai_dft_create(n->cx, n->cy, n->about_x, n->about_y, n->table);
+    }
     if (!n->by_fft && !n->by_blas) {
         engine_destroy(n);
         return ILSA_ERR_MEMORY;
@@ -135,11 +142,13 @@ int ilsai_elasticity_has_fft(void) {
 ilsa_status ilsai_elasticity_create(double E_prime, double dx, double dy, ilsa_product method,
                                     elasticity **e) {
     *e = NULL;
-    if (method == ILSA_PRODUCT_FFT && !ilsai_fft_available())
+    if (method == ILSA_PRODUCT_FFT && !ilsai_fft_available()) {
         return ILSA_ERR_MISMATCH;
+    }
     elasticity *made = ilsai_allocate_zeroed(1, sizeof *made);
-    if (!made)
+    if (!made) {
         return ILSA_ERR_MEMORY;
+    }
     made->E_prime = E_prime;
     made->dx = dx;
     made->dy = dy;
@@ -149,8 +158,9 @@ ilsa_status ilsai_elasticity_create(double E_prime, double dx, double dy, ilsa_p
 }
 
 void ilsai_elasticity_destroy(elasticity **e) {
-    if (!*e)
+    if (!*e) {
         return;
+    }
     engine_destroy(&(*e)->engine);
     ilsai_release(*e);
     *e = NULL;
@@ -178,8 +188,9 @@ void ilsai_elasticity_share(elasticity *e, thread_pool *threads) {
 }
 
 void ilsai_elasticity_make_self_terms(elasticity *e) {
-    if (e->edge.dx == 0)
+    if (e->edge.dx == 0) {
         ilsai_self_term_table(&e->edge, e->dx, e->dy);
+    }
 }
 
 self_term ilsai_elasticity_self_term(const elasticity *e, const self_term_front *front) {
@@ -193,8 +204,9 @@ double ilsai_elasticity_entry(const elasticity *e, int i, int j) {
 }
 
 void ilsai_elasticity_multiply(elasticity *e, const double *w, double *p, size_t stride) {
-    if (e->use_fft)
+    if (e->use_fft) {
         ilsai_fft_convolve(e->engine.by_fft, e->threads, e->bx, e->by, w, p, stride);
-    else
+    } else {
         ilsai_dft_convolve(e->engine.by_blas, e->bx, e->by, w, p, stride);
+    }
 }

@@ -42,8 +42,9 @@ gmres *ilsai_gmres_create(int restart) {
 }
 
 void ilsai_gmres_destroy(gmres **g) {
-    if (!*g)
+    if (!*g) {
         return;
+    }
     ilsai_release((*g)->basis);
     ilsai_release((*g)->vector);
     ilsai_release((*g)->hessenberg);
@@ -60,8 +61,9 @@ ilsa_status ilsai_gmres_reserve(gmres *g, size_t n) {
 /* The plain sum of squares is several times faster than dnrm2, which serves where it fails. */
 static double norm(int n, const double *x) {
     double squares = cblas_ddot(n, x, 1, x, 1);
-    if (squares > 1e-280 && squares < 1e280)
+    if (squares > 1e-280 && squares < 1e280) {
         return sqrt(squares);
+    }
     return isnan(squares) ? squares : cblas_dnrm2(n, x, 1);
 }
 
@@ -95,8 +97,9 @@ static double orthogonalise(const krylov *s, int count, double *w, double *h) {
     memset(h, 0, (size_t)count * sizeof *h);
     project_out(s, count, w, h);
     double left = norm(s->n, w), before = hypot(left, norm(count, h));
-    if (left >= 0.1 * before)
+    if (left >= 0.1 * before) {
         return left;
+    }
     project_out(s, count, w, h);
     left = norm(s->n, w);
     return left <= DBL_EPSILON * before ? 0 : left;
@@ -146,16 +149,18 @@ static int extend(const krylov *s, int *k, double target) {
     double *h = g->hessenberg + (size_t)*k * ((size_t)g->restart + 1);
     apply(s, basis_vector(s, *k), w);
     double below = orthogonalise(s, *k + 1, w, h), size = hypot(below, norm(*k + 1, h));
-    if (!isfinite(size))
+    if (!isfinite(size)) {
         return CYCLE_BROKEN;
+    }
     double kept = g->rhs[*k];
     if (rotate(g, *k, h, below) <= DBL_EPSILON * size) {
         g->rhs[*k] = kept;
         return CYCLE_BROKEN;
     }
     ++*k;
-    if (below == 0 || fabs(g->rhs[*k]) <= target)
+    if (below == 0 || fabs(g->rhs[*k]) <= target) {
         return CYCLE_DONE;
+    }
     cblas_dscal(s->n, 1 / below, w, 1);
     return CYCLE_GOES_ON;
 }
@@ -171,8 +176,9 @@ static int cycle(const krylov *s, double beta, double target, int products, doub
         state = extend(s, &k, target);
         result->iterations++;
     }
-    if (k > 0)
+    if (k > 0) {
         add_correction(s, k, x);
+    }
     result->residual = fabs(g->rhs[k]);
     return state;
 }
@@ -196,13 +202,15 @@ gmres_result ilsai_gmres_solve(gmres *g, size_t n, gmres_operator *A, gmres_oper
     memcpy(g->basis, b, n * sizeof *b);
     while (isfinite(beta) && beta > target && result.iterations < max_iterations) {
         int state = cycle(&s, beta, target, max_iterations - result.iterations, x, &result);
-        if (state != CYCLE_GOES_ON || result.iterations + 1 >= max_iterations)
+        if (state != CYCLE_GOES_ON || result.iterations + 1 >= max_iterations) {
             break;
+        }
         beta = result.residual = true_residual(&s, b, x);
         result.iterations++;
     }
     result.converged = isfinite(size) && result.residual <= target && isfinite(norm(s.n, x));
-    if (size > 0)
+    if (size > 0) {
         result.residual /= size;
+    }
     return result;
 }
