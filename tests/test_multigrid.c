@@ -141,7 +141,7 @@ static void nothing_in_dry_cells(void **state) {
 static double near_error(int nx, int ny, double aspect, int mirror) {
     near_field f = {0};
     assert_int_equal(ilsai_near_field_shape(&f, nx, ny), ILSA_OK);
-    f.mirror_x = f.mirror_y = mirror;
+    f.about_x = f.about_y = mirror < 0 ? MIRROR_NONE : mirror == 0 ? MIRROR_EDGE : MIRROR_CENTRE;
     f.self = ilsai_kernel(0, 0, 1, aspect);
     f.beside = ilsai_kernel(1, 0, 1, aspect);
     f.above = ilsai_kernel(0, 1, 1, aspect);

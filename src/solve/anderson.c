@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include <lapacke.h>
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 enum { DEPTH_MAX = 10 };
@@ -14,7 +15,7 @@ struct anderson {
     int columns;     /* differences that can be of use: depth, at most n */
     int kept;        /* differences held, <= depth */
     int next;        /* column that the next difference goes to */
-    int have_last;   /* last_g and last_f are set */
+    bool have_last;  /* last_g and last_f are set */
     double smallest; /* smallest residual norm since the last restart */
     double *last_g, *last_f;
     double *delta_g, *delta_f; /* n by depth, differences of g and of f = g - x */
@@ -51,7 +52,8 @@ ilsa_status ilsai_anderson_begin(anderson *a, int n) {
     ILSAI_TRY(ilsai_grow((size_t)n, &a->capacity, arrays, sizeof arrays / sizeof *arrays));
     a->n = n;
     a->columns = a->depth < n ? a->depth : n;
-    a->kept = a->next = a->have_last = 0;
+    a->kept = a->next = 0;
+    a->have_last = false;
     a->smallest = INFINITY;
     return ILSA_OK;
 }
@@ -73,7 +75,7 @@ static void remember(anderson *a, const double *g, const double *x) {
         a->last_g[k] = g[k];
         a->last_f[k] = g[k] - x[k];
     }
-    a->have_last = 1;
+    a->have_last = true;
 }
 
 static double residual_norm(const anderson *a, const double *g, const double *x) {
@@ -84,14 +86,14 @@ static double residual_norm(const anderson *a, const double *g, const double *x)
     return sqrt(sum);
 }
 
-/* Weights of the differences that make the residual least; 0 if there is no sound solution. */
-static int weights(anderson *a, int columns) {
+/* Weights of the differences that make the residual least; false if there is no sound solution. */
+static bool weights(anderson *a, int columns) {
     size_t size = (size_t)a->n * (size_t)columns;
     memcpy(a->matrix, a->delta_f, size * sizeof(double));
     memcpy(a->rhs, a->last_f, (size_t)a->n * sizeof(double));
     if (LAPACKE_dgels_work(LAPACK_COL_MAJOR, 'N', a->n, columns, 1, a->matrix, a->n, a->rhs, a->n,
                            a->work, (lapack_int)(sizeof a->work / sizeof *a->work)) != 0) {
-        return 0;
+        return false;
     }
     double sum = 0;
     for (int k = 0; k < columns; k++) {
@@ -103,7 +105,8 @@ static int weights(anderson *a, int columns) {
 void ilsai_anderson_next(anderson *a, const double *g, double *x) {
     double norm = residual_norm(a, g, x);
     if (norm > 2 * a->smallest) {
-        a->kept = a->next = a->have_last = 0;
+        a->kept = a->next = 0;
+        a->have_last = false;
         a->smallest = norm;
     }
     a->smallest = norm < a->smallest ? norm : a->smallest;

@@ -197,7 +197,7 @@ gmres_result ilsai_gmres_solve(gmres *g, size_t n, gmres_operator *A, gmres_oper
                                int max_iterations) {
     krylov s = {g, (int)n, A, M, context};
     double size = norm(s.n, b), beta = size, target = tolerance * size;
-    gmres_result result = {0, beta, 0};
+    gmres_result result = {0, beta, false};
     memset(x, 0, n * sizeof *x);
     memcpy(g->basis, b, n * sizeof *b);
     while (isfinite(beta) && beta > target && result.iterations < max_iterations) {

@@ -239,8 +239,8 @@ static void set_open_cells(void *context, int first, int end) {
 
 static void set_near_field(jacobian *m) {
     near_field *n = &m->widths;
-    n->mirror_x = m->g->mirror_x ? m->g->nx % 2 : -1;
-    n->mirror_y = m->g->mirror_y ? m->g->ny % 2 : -1;
+    n->about_x = ilsai_grid_about_x(m->g);
+    n->about_y = ilsai_grid_about_y(m->g);
     n->self = ilsai_elasticity_entry(m->e, 0, 0);
     n->beside = ilsai_elasticity_entry(m->e, 1, 0);
     n->above = ilsai_elasticity_entry(m->e, 0, 1);

@@ -67,7 +67,7 @@ static int joined(int n) {
 static size_t pool_size(int nx, int ny) {
     size_t size = level_size(nx, ny);
     while (nx > 1 || ny > 1) {
-        int along_x = nx >= ny;
+        bool along_x = nx >= ny;
         nx = along_x ? joined(nx) : nx;
         ny = along_x ? ny : joined(ny);
         size += level_size(nx, ny);
@@ -141,7 +141,7 @@ static void choose_halving(multigrid_level *l) {
 }
 
 /* How the cells along one axis go into those of the next level. */
-static int set_map(int half, int n, int *into) {
+static int set_map(bool half, int n, int *into) {
     for (int i = 0; i < n; i++) {
         into[i] = i;
     }

@@ -37,11 +37,11 @@ ilsa_status ilsai_near_field_shape(near_field *f, int nx, int ny) {
 /* The images of a folded scene, in the border. */
 static void set_border(const near_field *f, double *v) {
     size_t stride = (size_t)f->stride;
-    for (size_t j = 1; f->mirror_x >= 0 && j <= (size_t)f->ny; j++) {
-        v[j * stride] = v[j * stride + 1 + (size_t)f->mirror_x];
+    for (size_t j = 1; f->about_x != MIRROR_NONE && j <= (size_t)f->ny; j++) {
+        v[j * stride] = v[j * stride + 1 + (f->about_x == MIRROR_CENTRE)];
     }
-    if (f->mirror_y >= 0) {
-        memcpy(v, v + (1 + (size_t)f->mirror_y) * stride, stride * sizeof *v);
+    if (f->about_y != MIRROR_NONE) {
+        memcpy(v, v + (1 + (size_t)(f->about_y == MIRROR_CENTRE)) * stride, stride * sizeof *v);
     }
 }
 
