@@ -2,6 +2,7 @@
  * The two halves of the preconditioner: one multigrid cycle for flow with springs, and widths from
  * the near field of the elasticity.
  */
+#include "elastic/dd_kernel.h"
 #include "elastic/elasticity.h"
 #include "solve/multigrid.h"
 #include "solve/near_field.h"
@@ -142,10 +143,10 @@ static double near_error(int nx, int ny, double aspect, int mirror) {
     near_field f = {0};
     assert_int_equal(ilsai_near_field_shape(&f, nx, ny), ILSA_OK);
     f.about_x = f.about_y = mirror < 0 ? MIRROR_NONE : mirror == 0 ? MIRROR_EDGE : MIRROR_CENTRE;
-    f.self = ilsai_kernel(0, 0, 1, aspect);
-    f.beside = ilsai_kernel(1, 0, 1, aspect);
-    f.above = ilsai_kernel(0, 1, 1, aspect);
-    f.corner = ilsai_kernel(1, 1, 1, aspect);
+    f.self = ilsai_dd_kernel(0, 0, 1, aspect);
+    f.beside = ilsai_dd_kernel(1, 0, 1, aspect);
+    f.above = ilsai_dd_kernel(0, 1, 1, aspect);
+    f.corner = ilsai_dd_kernel(1, 1, 1, aspect);
     size_t stride = (size_t)f.stride, size = stride * ((size_t)ny + 2);
     double *x = calloc(size, sizeof *x), error = 0, most = 0;
     assert_non_null(x);

@@ -179,7 +179,7 @@ ilsa_status ilsa_get_model(const ilsa_solver *solver, ilsa_model *model) {
                    : g.mirror_x             ? ILSA_SYMMETRY_X
                    : g.mirror_y             ? ILSA_SYMMETRY_Y
                                             : ILSA_SYMMETRY_NONE;
-    out.product = ilsai_elasticity_method(solver->elastic);
+    out.product = solver->elastic->product;
     *model = out;
     return ILSA_OK;
 }

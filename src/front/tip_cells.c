@@ -291,12 +291,13 @@ static self_term self_term_of(const ilsa_solver *s, const front_cell *c) {
     double w = V > 0 ? ilsai_asymptote_width(&s->tip_material, V, at) : 1;
     self_term_front seen = {at, c->cos_a, c->sin_a,
                             ilsai_asymptote_exponent(&s->tip_material, V, at, w)};
-    return ilsai_elasticity_self_term(s->elastic, &seen);
+    return ilsai_elasticity_self_term(s->elastic, c->cell % s->g.nx, c->cell / s->g.nx, &seen);
 }
 
 static self_term self_term_of_survey(const ilsa_solver *s, const survey_cell *survey) {
     self_term_front seen = ilsai_survey_front(survey);
-    return ilsai_elasticity_self_term(s->elastic, &seen);
+    return ilsai_elasticity_self_term(s->elastic, survey->cell % s->g.nx, survey->cell / s->g.nx,
+                                      &seen);
 }
 
 static void set_survey_self_terms(void *context, int first, int end) {
@@ -481,7 +482,8 @@ static sensitivity sensitivity_in(const ilsa_solver *s, const front_cell *c, dou
  */
 static sensitivity sensitivity_of_survey(const ilsa_solver *s, const survey_cell *survey) {
     sensitivity r = {.cell = survey->cell};
-    double self = s->material.E_prime * ilsai_kernel(0, 0, s->g.dx, s->g.dy);
+    double self =
+        ilsai_elasticity_self_entry(s->elastic, survey->cell % s->g.nx, survey->cell / s->g.nx);
     double slope = self_term_of_survey(s, survey).slope * s->trial.width[survey->cell];
     answer a = {.pressure = fmax(slope * survey->ds_dw, -ILSAI_SELF_TERM_GIVES * self)};
     if (survey->ds_dw > 0) {

@@ -351,8 +351,7 @@ static void find_sensitivities(coupled *c, const coupled_problem *problem) {
 static ilsa_status set_box(const coupled_problem *problem) {
     const grid *g = problem->g;
     box part = ilsai_box_fold(g, &problem->footprint);
-    return ilsai_elasticity_set_box(problem->e, (int)ilsai_box_columns(&part),
-                                    (int)ilsai_box_rows(&part), ilsai_grid_about_x(g),
+    return ilsai_elasticity_set_box(problem->e, &part, ilsai_grid_about_x(g),
                                     ilsai_grid_about_y(g));
 }
 
@@ -372,7 +371,7 @@ ilsa_status ilsai_coupled_solve(coupled *c, const coupled_problem *problem,
         ilsai_contact_begin(&faces);
     }
     c->matrix.threads = c->fluid.threads = problem->threads;
-    ilsai_elasticity_share(problem->e, problem->threads);
+    problem->e->threads = problem->threads;
     c->matrix.products = 0;
     c->matrix.seconds_product = c->matrix.seconds_preconditioner = 0;
     ilsa_status status = newton(c, problem, counts);

@@ -54,9 +54,14 @@ static int has_pressure(const jacobian *m, int k) {
     return m->a->unknown[k] >= UNKNOWN_PRESSURE;
 }
 
+/* The entry of C between a cell and itself, that of the first numbered cell for all. */
+static double self_entry(const jacobian *m) {
+    return ilsai_elasticity_self_entry(m->e, m->a->cell[0] % m->g->nx, m->a->cell[0] / m->g->nx);
+}
+
 /* What a pressure takes of a cell where elasticity is a spring: see JACOBIAN_SPRING. */
 static double spring_of(const jacobian *m) {
-    return JACOBIAN_SPRING / ilsai_elasticity_entry(m->e, 0, 0);
+    return JACOBIAN_SPRING / self_entry(m);
 }
 
 double ilsai_jacobian_without_width(const jacobian *m, int k) {
@@ -237,14 +242,16 @@ static void set_open_cells(void *context, int first, int end) {
     }
 }
 
+/* One stencil serves all cells, that of the first numbered one: a preconditioner may be inexact. */
 static void set_near_field(jacobian *m) {
     near_field *n = &m->widths;
+    int i = m->a->cell[0] % m->g->nx, j = m->a->cell[0] / m->g->nx;
     n->about_x = ilsai_grid_about_x(m->g);
     n->about_y = ilsai_grid_about_y(m->g);
-    n->self = ilsai_elasticity_entry(m->e, 0, 0);
-    n->beside = ilsai_elasticity_entry(m->e, 1, 0);
-    n->above = ilsai_elasticity_entry(m->e, 0, 1);
-    n->corner = ilsai_elasticity_entry(m->e, 1, 1);
+    n->self = self_entry(m);
+    n->beside = ilsai_elasticity_entry(m->e, i, j, i + 1, j);
+    n->above = ilsai_elasticity_entry(m->e, i, j, i, j + 1);
+    n->corner = ilsai_elasticity_entry(m->e, i, j, i + 1, j + 1);
     share_cells(set_open_cells, m, NULL, NULL);
 }
 
@@ -318,7 +325,7 @@ static double folded_entry(const jacobian *m, int a, int b) {
     int count = ilsai_grid_images(m->g, cell % nx, cell / nx, image);
     double sum = 0;
     for (int c = 0; c < count; c++) {
-        sum += ilsai_elasticity_entry(m->e, here % nx - image[c] % nx, here / nx - image[c] / nx);
+        sum += ilsai_elasticity_entry(m->e, here % nx, here / nx, image[c] % nx, image[c] / nx);
     }
     return sum;
 }
@@ -347,7 +354,7 @@ static void add_width(const jacobian *m, double *out, int k, double value) {
  * the others: pivots are chosen among the unknowns, and must not depend on units.
  */
 static double pressure_unit(const jacobian *m) {
-    return ilsai_elasticity_entry(m->e, 0, 0);
+    return self_entry(m);
 }
 
 /* What the pressure of numbered cell row is in terms of the unknowns: C with the tips'
