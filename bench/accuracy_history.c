@@ -7,7 +7,8 @@
  */
 #include "common_layers.h"
 
-#include "step/state.h"
+#include "model/mesh.h"
+#include "step/solver.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -36,10 +37,10 @@ typedef struct answers {
 /* In the cells whose centres are more than half the middle layer's height away from its middle. */
 static double leaked_beyond(const ilsa_solver *s) {
     double sum = 0;
-    for (int j = 0; j < s->mesh.ny; j++)
-        for (int i = 0; i < s->mesh.nx && fabs(ilsai_mesh_y(&s->mesh, j)) > 10; i++)
-            sum += s->field.leaked[j * s->mesh.nx + i];
-    return sum * s->mesh.dx * s->mesh.dy;
+    for (int j = 0; j < s->model.mesh.ny; j++)
+        for (int i = 0; i < s->model.mesh.nx && fabs(ilsai_mesh_y(&s->model.mesh, j)) > 10; i++)
+            sum += s->fracture.cells.leaked[j * s->model.mesh.nx + i];
+    return sum * s->model.mesh.dx * s->model.mesh.dy;
 }
 
 static void read_state(const ilsa_solver *solver, double value[QUANTITIES], long *steps) {
@@ -55,7 +56,7 @@ static void run(const layer_scene *scene, int cells, int way, answers *a) {
     ilsa_solver *solver = layer_start(scene, cells);
     ilsa_status status = solver ? ILSA_OK : ILSA_ERR_STATE;
     if (solver)
-        solver->velocity = velocity[way];
+        solver->numerics.velocity = velocity[way];
     for (int k = 0; k < TIMES; k++) {
         status = status ? status : layer_advance(solver, times[k], refinement[way]);
         if (status == ILSA_OK)

@@ -5,11 +5,12 @@
  *     bench_accuracy_parts [marching] [survey] [elasticity] [leakoff]
  */
 #include "common_radial.h"
+#include "common_worst.h"
 
 #include "elastic/elasticity.h"
 #include "front/march.h"
 #include "front/survey.h"
-#include "step/step.h"
+#include "step/fracture.h"
 #include "tip/penny.h"
 #include "tip/tip_cell.h"
 
@@ -91,7 +92,7 @@ static disc make_disc(double cells, double aspect, double R, double R_kind) {
         d.kind[cell] = f.ell < full ? ILSA_CELL_TIP : ILSA_CELL_CHANNEL;
         ilsai_box_add(&d.footprint, cell % d.nx, cell / d.nx);
     }
-    ilsai_step_classify(&d.g, &d.footprint, d.kind);
+    ilsai_fracture_find_survey(&d.g, &d.footprint, d.kind);
     return d;
 }
 
@@ -114,8 +115,8 @@ static void add(spread *s, const disc *d, int cell, double error) {
     const double slope = fmin(x, y) / fmax(x, y);
     s->sum += error;
     s->count++;
-    s->low = fmin(s->low, error);
-    s->high = fmax(s->high, error);
+    s->low = smaller_of(s->low, error);
+    s->high = larger_of(s->high, error);
     if (slope < 0.2) {
         s->axis += error;
         s->on_axis++;
@@ -228,14 +229,13 @@ static double survey_error(const penny_solution *s, double distance, double h, i
     const double depth = 2 * h, from = s->R - distance;
     double width[2] = {mean_over(s, width_at, 0, from, 0, h, h),
                        mean_over(s, width_at, 0, from - depth, 0, h, h)};
-    const ilsa_solver solver = {
-        .mesh = {2, 1, h, h}, .tip_material = s->scaled, .trial = {.width = width}};
+    const survey_widths widths = {&s->scaled, h, h, width, 0};
     survey_cell survey = {.s0 = distance - STEP * h, .h = h, .cos_a = 1, .s = distance};
     const double dt = s->t - ilsai_penny_arrival(s, 1 - STEP * h / s->R);
     survey.V = STEP * h / dt;
     survey.inner = next_term ? 1 : -1;
     survey.depth = depth;
-    return (ilsai_survey_distance(&solver, &survey, dt) - distance) / s->R;
+    return (ilsai_survey_distance(&widths, &survey, dt) - distance) / s->R;
 }
 
 static void survey(void) {

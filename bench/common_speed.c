@@ -2,7 +2,7 @@
 
 #include "common_layers.h"
 #include "common_radial.h"
-#include "step/state.h"
+#include "step/solver.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -153,16 +153,16 @@ ilsa_solver *speed_start(const speed_scene *scene, int cells, const ilsa_solver_
 
 /* An image serves solvers of its own definition: this one passes for such meanwhile. */
 ilsa_status speed_copy_state(ilsa_solver *to, const ilsa_solver *from) {
-    const ilsa_solver_def own = to->def;
+    const ilsa_solver_def own = to->model.options;
     size_t size = 0;
     ilsa_status status = ilsa_snapshot_save(from, NULL, &size);
     void *image = status == ILSA_OK ? malloc(size) : NULL;
     if (!image)
         return status ? status : ILSA_ERR_MEMORY;
     status = ilsa_snapshot_save(from, image, &size);
-    to->def = from->def;
+    to->model.options = from->model.options;
     status = status ? status : ilsa_snapshot_restore(to, image, size);
-    to->def = own;
+    to->model.options = own;
     free(image);
     return status;
 }

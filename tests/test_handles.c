@@ -1,5 +1,6 @@
 /* Mesh, material, stress, status, version: every branch of every function, bad input first. */
 #include "base/error.h"
+#include "check.h"
 #include "failing.h"
 #include "model/material.h"
 #include "model/mesh.h"
@@ -9,15 +10,9 @@
 #include <limits.h>
 #include <math.h>
 #include <pthread.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static const double bad[] = {NAN, INFINITY, -INFINITY};
 
@@ -121,7 +116,7 @@ static void mesh_refuses_bad_definitions(void **state) {
     }
     check_failed(try_mesh(3, 3, 1, 1001), ILSA_ERR_VALUE, "dx / dy = 1 / 1001");
     check_failed(try_mesh(3, 3, 1001, 1), ILSA_ERR_VALUE, "must be 1e-3 .. 1e3");
-    check_failed(try_mesh(3, 3, 1e300, 1e-300), ILSA_ERR_VALUE, "inf");
+    check_failed(try_mesh(3, 3, 1e61, 1e61), ILSA_ERR_VALUE, "1e-60 .. 1e+60");
 }
 
 static void mesh_accepts_the_whole_range(void **state) {
@@ -129,7 +124,7 @@ static void mesh_accepts_the_whole_range(void **state) {
     assert_int_equal(try_mesh(3, 3, 1, 1), ILSA_OK);
     assert_int_equal(try_mesh(3, 1000000, 1, 1000), ILSA_OK);
     assert_int_equal(try_mesh(1000000, 3, 1e-6, 1e-9), ILSA_OK);
-    assert_int_equal(try_mesh(1 << 15, 1 << 13, 1e300, 1e299), ILSA_OK);
+    assert_int_equal(try_mesh(1 << 15, 1 << 13, 1e60, 1e59), ILSA_OK);
 }
 
 static void mesh_lives_and_dies(void **state) {
@@ -516,11 +511,14 @@ static void coarse_cells_are_means_of_old_ones(void **state) {
             fill(stress, &def, old);
             assert_int_equal(ilsai_stress_coarsen(stress), ILSA_OK);
             fill(stress, &twice, new);
+            double worst = NOTHING_YET;
             for (int j = 0; j < ny; j++)
                 for (int i = 0; i < nx; i++) {
                     double mean = covered_mean(old, nx, ny, i, j);
-                    assert_true(isnan(mean) || fabs(new[j * nx + i] - mean) < 1e-12);
+                    if (!isnan(mean)) /* NaN: not all of the cell is covered */
+                        worst = worst_of(worst, fabs(new[j * nx + i] - mean));
                 }
+            assert_below(worst, 1e-12);
             assert_true(new[0] == 0); /* the nearest old cell is the corner, or alone in it */
             assert_true(new[nx * ny - 1] == nx *ny - 1 || nx == 4 || ny == 4);
             ilsa_stress_destroy(&stress);

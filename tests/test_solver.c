@@ -1,19 +1,14 @@
 /* Every function of solver.h: bad input of each kind, then what good input gives. */
 #include "base/tuning.h"
+#include "check.h"
 #include "elastic/elasticity.h"
 #include "host.h"
 
 #include <float.h>
 #include <math.h>
 #include <pthread.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static const double bad[] = {NAN, INFINITY, -INFINITY, -1};
 enum { BAD = sizeof bad / sizeof *bad };
@@ -110,7 +105,7 @@ static void create_refuses_bad_integers(void **state) {
     (void)state;
     parts p;
     make_parts(&p);
-    static const int counts[] = {0, -1, 1001, -2147483647}, levels[] = {0, -3, 6, 1000000};
+    static const int counts[] = {0, -1, 1001, -2147483647}, levels[] = {-1, -3, 6, 1000000};
     for (int k = 0; k < 4; k++) {
         ilsa_solver_def def = p.def;
         def.source_count = counts[k];
@@ -446,6 +441,40 @@ static void absurd_units_are_refused(void **state) {
     check_message(ilsa_last_error(solver), "must all be 1e-60 .. 1e+60");
     assert_int_equal(ilsa_set_rate(solver, 0, 1e61), ILSA_ERR_VALUE);
     ilsa_solver_destroy(&solver);
+}
+
+/* Zero is the default of the level, as of every other option. */
+static void level_zero_is_the_default(void **state) {
+    (void)state;
+    host_scene scene = host_penny(0, 41, 0.1);
+    scene.options.level = 0;
+    ilsa_solver *solver = host_started(&scene, 0.7);
+    ilsa_model used;
+    assert_int_equal(ilsa_get_model(solver, &used), ILSA_OK);
+    assert_int_equal(used.level, ilsa_solver_def_default().level);
+    ilsa_solver_destroy(&solver);
+}
+
+/* A getter that fails says why to whoever asks, until another call of the thread fails. */
+static void message_of_a_getter_is_told_by_every_handle(void **state) {
+    (void)state;
+    host_scene scene = host_penny(0, 41, 0.1);
+    ilsa_solver *empty = host_solver(&scene), *full = host_started(&scene, 0.7);
+    const double *width;
+    assert_int_equal(ilsa_set_rate(empty, 0, -1), ILSA_ERR_VALUE);
+    check_message(ilsa_last_error(empty), "rate");
+    assert_int_equal(ilsa_get_width(empty, &width), ILSA_ERR_STATE);
+    const ilsa_solver *asked[] = {empty, full, NULL};
+    for (int k = 0; k < 3; k++) {
+        check_message(ilsa_last_error(asked[k]), "ilsa_start_radial");
+    }
+    assert_int_equal(ilsa_get_width(full, &width), ILSA_OK);
+    check_message(ilsa_last_error(full), "ilsa_start_radial");
+    assert_int_equal(ilsa_set_rate(full, 7, 1), ILSA_ERR_VALUE);
+    check_message(ilsa_last_error(full), "source = 7");
+    check_message(ilsa_last_error(empty), "rate");
+    ilsa_solver_destroy(&empty);
+    ilsa_solver_destroy(&full);
 }
 
 /* A stress that is too large is refused, and the one that was there stays. */
@@ -823,7 +852,7 @@ static void survey_cells_follow_the_asymptote(void **state) {
     assert_int_equal(ilsa_get_cell_kinds(solver, &kind), ILSA_OK);
     memcpy(before, kind, sizeof before);
     host_steps(solver, 1);
-    double worst = 0;
+    double worst = NOTHING_YET;
     const ilsa_survey_point *points;
     size_t count;
     assert_true(!ilsa_get_width(solver, &width) && !ilsa_get_cell_kinds(solver, &kind));
@@ -839,12 +868,13 @@ static void survey_cells_follow_the_asymptote(void **state) {
         assert_true(fabs(p->y - 0.05 * row) < 1e-12);
         assert_int_equal(ilsa_tip_width(&scene.material, p->V, p->s, &w), ILSA_OK);
         if (before[p->cell] == ILSA_CELL_SURVEY)
-            worst = fmax(worst, fabs(w / p->w - 1));
+            worst = worst_of(worst, fabs(w / p->w - 1));
         double sum = p->regime.N_k + p->regime.N_mt + p->regime.N_m;
         assert_true(fabs(sum - 1) < 1e-12);
     }
     print_message("solver: survey cells off the asymptote by %.1e\n", worst);
-    assert_true(worst > 0 && worst < 0.05);
+    assert_true(worst > 0);
+    assert_below(worst, 0.05);
     ilsa_solver_destroy(&solver);
 }
 
@@ -880,7 +910,7 @@ static void the_model_says_what_is_on(void **state) {
 /* Steps of the same length by two solvers; returns the largest difference of width. */
 static double disagreement(ilsa_solver *a, ilsa_solver *b, int steps, int count) {
     const double *p, *q;
-    double worst = 0, largest = 0, dt;
+    double worst = NOTHING_YET, largest = 0, dt;
     for (int k = 0; k < steps; k++) {
         assert_int_equal(ilsa_suggest_dt(a, &dt), ILSA_OK);
         host_step(a, 0.9 * dt);
@@ -888,8 +918,8 @@ static double disagreement(ilsa_solver *a, ilsa_solver *b, int steps, int count)
     }
     assert_true(!ilsa_get_width(a, &p) && !ilsa_get_width(b, &q));
     for (int k = 0; k < count; k++) {
-        worst = fmax(worst, fabs(p[k] - q[k]));
-        largest = fmax(largest, p[k]);
+        worst = worst_of(worst, fabs(p[k] - q[k]));
+        largest = larger_of(largest, p[k]);
     }
     ilsa_solver_destroy(&a);
     ilsa_solver_destroy(&b);
@@ -914,7 +944,8 @@ static void loops_agree(void **state) {
     double off = disagreement(coupled, nested, 4, 51 * 41);
     print_message("solver: coupled and nested loops differ by %.1e, %ld and %ld passes\n", off,
                   passes[0], passes[1]);
-    assert_true(off < 1e-4 && passes[1] > passes[0]);
+    assert_below(off, 1e-4);
+    assert_true(passes[1] > passes[0]);
 }
 
 /*
@@ -938,7 +969,7 @@ static void linear_solvers_agree(void **state) {
         double off = disagreement(dense, gmres, 5, 51 * 41);
         print_message("solver: dense and GMRES differ by %.1e at tolerance %g\n", off,
                       tolerance[k]);
-        assert_true(off < (k ? 1e-7 : 4e-3));
+        assert_below(off, k ? 1e-7 : 4e-3);
     }
 }
 
@@ -957,7 +988,7 @@ static void products_agree(void **state) {
     assert_int_equal(model.product, ILSA_PRODUCT_BLAS);
     double off = disagreement(fft, blas, 5, 51 * 41);
     print_message("solver: FFT and BLAS differ by %.1e\n", off);
-    assert_true(off < 1e-9);
+    assert_below(off, 1e-9);
 }
 
 /* Each level takes smaller steps and a sharper tolerance, and all come to the same radius. */
@@ -1052,6 +1083,8 @@ int main(void) {
         cmocka_unit_test(start_refuses_bad_input),
         cmocka_unit_test(start_survives_extreme_numbers),
         cmocka_unit_test(absurd_units_are_refused),
+        cmocka_unit_test(level_zero_is_the_default),
+        cmocka_unit_test(message_of_a_getter_is_told_by_every_handle),
         cmocka_unit_test(absurd_stress_is_refused),
         cmocka_unit_test(radius_and_time_of_a_start_agree),
         cmocka_unit_test(a_start_replaces_the_fracture),

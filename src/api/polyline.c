@@ -1,9 +1,10 @@
 /* The front as closed polylines: marching squares on the level at the cell centres. */
-#include "step/state.h"
+#include "base/memory.h"
+#include "model/mesh.h"
+#include "step/solver.h"
+#include "tip/asymptote.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /*
  * A square has its corners at four cell centres. An edge of the squares is named by the cell at
@@ -19,10 +20,10 @@ typedef struct tracer {
 } tracer;
 
 static double level_at(const tracer *t, int i, int j) {
-    return t->s->field.level[j * t->s->mesh.nx + i];
+    return t->s->fracture.cells.level[j * t->s->model.mesh.nx + i];
 }
 
-static int inside(const tracer *t, int i, int j) {
+static bool inside(const tracer *t, int i, int j) {
     return level_at(t, i, j) <= 0;
 }
 
@@ -52,14 +53,15 @@ static int nearest_survey(const ilsa_solver *s, int i, int j, double x, double y
     double least = INFINITY;
     for (int b = j - reach; b <= j + reach; b++) {
         for (int a = i - reach; a <= i + reach; a++) {
-            if (a < 0 || a >= s->mesh.nx || b < 0 || b >= s->mesh.ny ||
-                s->field.kind[b * s->mesh.nx + a] != ILSA_CELL_SURVEY) {
+            if (a < 0 || a >= s->model.mesh.nx || b < 0 || b >= s->model.mesh.ny ||
+                s->fracture.cells.kind[b * s->model.mesh.nx + a] != ILSA_CELL_SURVEY) {
                 continue;
             }
-            double d = hypot(ilsai_mesh_x(&s->mesh, a) - x, ilsai_mesh_y(&s->mesh, b) - y);
+            double d =
+                hypot(ilsai_mesh_x(&s->model.mesh, a) - x, ilsai_mesh_y(&s->model.mesh, b) - y);
             if (d < least) {
                 least = d;
-                best = b * s->mesh.nx + a;
+                best = b * s->model.mesh.nx + a;
             }
         }
     }
@@ -73,9 +75,9 @@ static int nearest_survey(const ilsa_solver *s, int i, int j, double x, double y
 static ilsa_tip_regime regime_at(const ilsa_solver *s, int cell) {
     ilsa_tip_regime regime = {.N_k = 1, .x = 1};
     if (cell >= 0) {
-        double distance = -s->field.level[cell], V = s->field.speed[cell];
-        double w = ilsai_asymptote_width(&s->material, V, distance);
-        ilsa_tip_triangle(&s->material, V, distance, w, &regime);
+        double distance = -s->fracture.cells.level[cell], V = s->fracture.cells.speed[cell];
+        double w = ilsai_asymptote_width(&s->model.material, V, distance);
+        ilsa_tip_triangle(&s->model.material, V, distance, w, &regime);
     }
     return regime;
 }
@@ -83,31 +85,24 @@ static ilsa_tip_regime regime_at(const ilsa_solver *s, int cell) {
 /* The point of the front on an edge. */
 static ilsa_front_point point_on(const tracer *t, int i, int j, int along_y, int loop) {
     const ilsa_solver *s = t->s;
-    int i1 = i + !along_y, j1 = j + along_y, nx = s->mesh.nx;
+    int i1 = i + !along_y, j1 = j + along_y, nx = s->model.mesh.nx;
     double a = level_at(t, i, j), b = level_at(t, i1, j1);
-    double f = isinf(a)   ? 1 + b / (along_y ? s->mesh.dy : s->mesh.dx)
-               : isinf(b) ? -a / (along_y ? s->mesh.dy : s->mesh.dx)
+    double f = isinf(a)   ? 1 + b / (along_y ? s->model.mesh.dy : s->model.mesh.dx)
+               : isinf(b) ? -a / (along_y ? s->model.mesh.dy : s->model.mesh.dx)
                           : a / (a - b);
     f = f < 0 ? 0 : f > 1 ? 1 : f;
     ilsa_front_point p = {.loop = loop};
-    p.x = ilsai_mesh_x(&s->mesh, i) + (along_y ? 0 : f * s->mesh.dx);
-    p.y = ilsai_mesh_y(&s->mesh, j) + (along_y ? f * s->mesh.dy : 0);
-    double Va = s->field.speed[j * nx + i], Vb = s->field.speed[j1 * nx + i1];
+    p.x = ilsai_mesh_x(&s->model.mesh, i) + (along_y ? 0 : f * s->model.mesh.dx);
+    p.y = ilsai_mesh_y(&s->model.mesh, j) + (along_y ? f * s->model.mesh.dy : 0);
+    double Va = s->fracture.cells.speed[j * nx + i], Vb = s->fracture.cells.speed[j1 * nx + i1];
     p.V = (1 - f) * Va + f * Vb;
     p.regime = regime_at(s, nearest_survey(s, i, j, p.x, p.y));
     return p;
 }
 
 static ilsa_status append(tracer *t, ilsa_front_point p) {
-    if (t->count == t->capacity) {
-        size_t capacity = 2 * t->capacity + 64;
-        ilsa_front_point *points = realloc(t->points, capacity * sizeof *points);
-        if (!points) {
-            return ILSA_ERR_MEMORY;
-        }
-        t->points = points;
-        t->capacity = capacity;
-    }
+    const grown_array arrays[] = {ILSAI_GROWN(t->points)};
+    ILSAI_TRY(ilsai_grow(t->count + 1, &t->capacity, arrays, 1));
     t->points[t->count++] = p;
     return ILSA_OK;
 }
@@ -144,9 +139,7 @@ static ilsa_status walk(tracer *t, int i, int j, int entry, int loop) {
         unsigned char *flag = side_flag(t, i, j, entry);
         int along_y = entry % 2, ei = i + (entry == 1), ej = j + (entry == 2);
         *flag = 0;
-        if (append(t, point_on(t, ei, ej, along_y, loop)) != ILSA_OK) {
-            return ILSA_ERR_MEMORY;
-        }
+        ILSAI_TRY(append(t, point_on(t, ei, ej, along_y, loop)));
         int side = exit_side(t, i, j, entry);
         if (side < 0) {
             break;
@@ -167,10 +160,7 @@ static ilsa_status trace(tracer *t) {
     for (int j = t->squares.y0; j <= t->squares.y1; j++) {
         for (int i = t->squares.x0; i <= t->squares.x1; i++) {
             if (*edge_flag(t, i, j, 0) && inside(t, i, j)) {
-                ilsa_status status = walk(t, i, j, 0, loop++);
-                if (status != ILSA_OK) {
-                    return status;
-                }
+                ILSAI_TRY(walk(t, i, j, 0, loop++));
             }
         }
     }
@@ -219,29 +209,26 @@ static ilsa_status check_list(ilsa_solver *s, const void *points, const size_t *
     if (!s || !points || !count) {
         return ilsai_check_pointer(error, !s ? "solver" : !points ? "points" : "count", NULL);
     }
-    return ilsai_check_started(s, error);
+    return ilsai_fracture_check(&s->fracture, error);
 }
 
 ilsa_status ilsa_get_front(ilsa_solver *solver, const ilsa_front_point **points, size_t *count) {
-    ilsa_status status = check_list(solver, points, count);
-    if (status != ILSA_OK) {
-        return status;
-    }
-    const box *b = &solver->now.footprint;
+    ILSAI_TRY(check_list(solver, points, count));
+    const box *b = &solver->fracture.footprint;
     tracer t = {.s = solver,
                 .squares = {b->x0 - 1, b->x1, b->y0 - 1, b->y1},
-                .points = solver->front_points,
-                .capacity = solver->front_capacity};
+                .points = solver->handed_out.front,
+                .capacity = solver->handed_out.front_capacity};
     size_t edges = 2 * (size_t)(b->x1 - b->x0 + 3) * (size_t)(b->y1 - b->y0 + 3);
-    t.on = calloc(edges, 1);
-    status = t.on ? ILSA_OK : ILSA_ERR_MEMORY;
+    t.on = ilsai_allocate_zeroed(edges, 1);
+    ilsa_status status = t.on ? ILSA_OK : ILSA_ERR_MEMORY;
     if (status == ILSA_OK) {
         mark(&t);
         status = trace(&t);
     }
-    free(t.on);
-    solver->front_points = t.points;
-    solver->front_capacity = t.capacity;
+    ilsai_release(t.on);
+    solver->handed_out.front = t.points;
+    solver->handed_out.front_capacity = t.capacity;
     if (status != ILSA_OK) {
         return ilsai_fail(&solver->error, status, "no memory for the front");
     }
@@ -252,51 +239,45 @@ ilsa_status ilsa_get_front(ilsa_solver *solver, const ilsa_front_point **points,
 }
 
 static ilsa_survey_point survey_point(const ilsa_solver *s, int i, int j) {
-    int cell = j * s->mesh.nx + i;
+    int cell = j * s->model.mesh.nx + i;
     ilsa_survey_point p = {.cell = cell,
-                           .x = ilsai_mesh_x(&s->mesh, i),
-                           .y = ilsai_mesh_y(&s->mesh, j),
-                           .s = -s->field.level[cell],
-                           .w = s->field.width[cell],
-                           .V = s->field.speed[cell]};
+                           .x = ilsai_mesh_x(&s->model.mesh, i),
+                           .y = ilsai_mesh_y(&s->model.mesh, j),
+                           .s = -s->fracture.cells.level[cell],
+                           .w = s->fracture.cells.width[cell],
+                           .V = s->fracture.cells.speed[cell]};
     p.regime = regime_at(s, cell);
     return p;
 }
 
 static size_t count_survey(const ilsa_solver *s) {
-    const box *b = &s->now.footprint;
+    const box *b = &s->fracture.footprint;
     size_t count = 0;
     for (int j = b->y0; j <= b->y1; j++) {
         for (int i = b->x0; i <= b->x1; i++) {
-            count += s->field.kind[j * s->mesh.nx + i] == ILSA_CELL_SURVEY;
+            count += s->fracture.cells.kind[j * s->model.mesh.nx + i] == ILSA_CELL_SURVEY;
         }
     }
     return count;
 }
 
 ilsa_status ilsa_get_survey(ilsa_solver *solver, const ilsa_survey_point **points, size_t *count) {
-    ilsa_status status = check_list(solver, points, count);
-    if (status != ILSA_OK) {
-        return status;
-    }
+    ILSAI_TRY(check_list(solver, points, count));
+    handed_out *out = &solver->handed_out;
     size_t total = count_survey(solver), filled = 0;
-    if (total > solver->survey_capacity) {
-        ilsa_survey_point *fresh = realloc(solver->survey_points, 2 * total * sizeof *fresh);
-        if (!fresh) {
-            return ilsai_fail(&solver->error, ILSA_ERR_MEMORY, "no memory for the survey cells");
-        }
-        solver->survey_points = fresh;
-        solver->survey_capacity = 2 * total;
+    const grown_array arrays[] = {ILSAI_GROWN(out->survey)};
+    if (ilsai_grow(total, &out->survey_capacity, arrays, 1) != ILSA_OK) {
+        return ilsai_fail(&solver->error, ILSA_ERR_MEMORY, "no memory for the survey cells");
     }
-    const box *b = &solver->now.footprint;
+    const box *b = &solver->fracture.footprint;
     for (int j = b->y0; j <= b->y1; j++) {
         for (int i = b->x0; i <= b->x1; i++) {
-            if (solver->field.kind[j * solver->mesh.nx + i] == ILSA_CELL_SURVEY) {
-                solver->survey_points[filled++] = survey_point(solver, i, j);
+            if (solver->fracture.cells.kind[j * solver->model.mesh.nx + i] == ILSA_CELL_SURVEY) {
+                out->survey[filled++] = survey_point(solver, i, j);
             }
         }
     }
-    *points = solver->survey_points;
+    *points = out->survey;
     *count = total;
     return ILSA_OK;
 }

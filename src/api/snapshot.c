@@ -1,45 +1,48 @@
-/* The image of a solver: a header, the state, the fields of its region, tip paths, rates, stress.
+/*
+ * The snapshot of a solver: a header, the identity, the fracture, the paths through the tip cells,
+ * rates, stress, and the fields of the region around the fracture.
  */
 #include <ilsa/snapshot.h>
 
 #include "api/snapshot_check.h"
+#include "base/memory.h"
 #include "base/tuning.h"
-#include "step/state.h"
+#include "model/mesh.h"
+#include "model/options.h"
+#include "step/solver.h"
 #include <math.h>
 #include <stdint.h>
-#include <stdlib.h>
 #include <string.h>
 
 #define SNAPSHOT_MAGIC "ilsasnap"
-enum { SNAPSHOT_LAYOUT = 3 };
+enum { SNAPSHOT_LAYOUT = 4 };
 
 typedef struct header {
     char magic[8];
     uint32_t layout, version;
-    uint64_t size;     /* of the whole image */
+    uint64_t size;     /* of the whole snapshot */
     uint64_t checksum; /* of all that follows the header */
 } header;
 
-/* What a solver must share with the one that the image was taken of. */
+/* What a solver must share with the one that the snapshot was taken of. */
 typedef struct identity {
-    int nx, ny, source_count, level;
+    int nx, ny, source_count, none;
     double dx, dy; /* as they were; coarsening doubles them */
     ilsa_material_def material;
-    double step_cells, tolerance, dt_max, closure_width;
-    int coarsen, tip, symmetry, loop, linear, product;
+    double option[OPTION_COUNT]; /* in force; 0 where it need not be shared */
 } identity;
 
-/* Copies to or from the image, or only counts, depending on the pass. */
+/* Copies to or from the snapshot, or only counts, depending on the pass. */
 typedef struct stream {
     unsigned char *out;
     const unsigned char *in;
     size_t at, size;
-    int failed;
+    bool failed;
 } stream;
 
 static void pass(stream *io, void *data, size_t size) {
     if (io->failed || size > io->size - io->at) {
-        io->failed = 1;
+        io->failed = true;
         return;
     }
     if (io->out) {
@@ -67,31 +70,26 @@ static uint64_t checksum(const unsigned char *data, size_t size) {
 
 /* Every byte of what is written is defined, padding included. */
 static identity identify(const ilsa_solver *s) {
+    const model *m = &s->model;
     identity id;
     memset(&id, 0, sizeof id);
-    id.nx = s->mesh.nx;
-    id.ny = s->mesh.ny;
-    id.dx = s->mesh.dx;
-    id.dy = s->mesh.dy;
-    id.source_count = s->def.source_count;
-    id.level = s->def.level;
-    id.material = s->material;
-    id.material.mu_prime = s->inviscid ? 0 : s->material.mu_prime;
-    id.step_cells = s->step_cells;
-    id.tolerance = s->tolerance;
-    id.dt_max = s->def.dt_max;
-    id.closure_width = s->def.closure_width;
-    id.coarsen = s->def.coarsen;
-    id.tip = (int)s->def.tip;
-    id.symmetry = (int)s->def.symmetry;
-    id.loop = (int)s->def.loop;
-    id.linear = (int)s->def.linear;
-    id.product = (int)s->def.product;
+    id.nx = m->mesh.nx;
+    id.ny = m->mesh.ny;
+    id.source_count = m->sources.count;
+    id.dx = m->mesh.dx;
+    id.dy = m->mesh.dy;
+    id.material = m->material;
+    id.material.mu_prime = m->inviscid ? 0 : m->material.mu_prime;
+    for (int k = 0; k < OPTION_COUNT; k++) {
+        id.option[k] = ilsai_option_is_kept(k) ? ilsai_option(&m->options, k) : 0;
+    }
+    id.option[OPTION_step_cells] = s->numerics.step_cells;
+    id.option[OPTION_tolerance] = s->numerics.tolerance;
     return id;
 }
 
 /* The same definition, however often either has been coarsened, which doubles dx and dy. */
-static int same_definition(const identity *a, const identity *b) {
+static bool same_definition(const identity *a, const identity *b) {
     identity like = *a;
     int times;
     like.dx = b->dx;
@@ -102,104 +100,99 @@ static int same_definition(const identity *a, const identity *b) {
            a->dx / b->dx == a->dy / b->dy;
 }
 
-static void pass_state(stream *io, state *now) {
-    state packed;
-    memset(&packed, 0, sizeof packed);
-    packed.started = now->started;
-    packed.mirror_x = now->mirror_x;
-    packed.mirror_y = now->mirror_y;
-    packed.mu_prime = now->mu_prime;
-    packed.time = now->time;
-    packed.dt_limit = now->dt_limit;
-    packed.injected = now->injected;
-    packed.leaked = now->leaked;
-    packed.fracture = now->fracture;
-    packed.front_change = now->front_change;
-    packed.front_advance = now->front_advance;
-    packed.dt = now->dt;
-    packed.leak_rate = now->leak_rate;
-    packed.width_most = now->width_most;
-    packed.footprint = now->footprint;
-    packed.unknowns = now->unknowns;
-    pass(io, &packed, sizeof packed);
-    *now = packed;
+/* Flags that are none, as a bool must not be read from any byte, fail. */
+static void pass_flags(stream *io, fracture *f) {
+    uint32_t flags = (uint32_t)f->started | (uint32_t)f->mirror_x << 1 | (uint32_t)f->mirror_y << 2;
+    pass(io, &flags, sizeof flags);
+    io->failed |= flags > 7 || !(flags & 1);
+    f->started = flags & 1;
+    f->mirror_x = flags >> 1 & 1;
+    f->mirror_y = flags >> 2 & 1;
 }
 
-static void pass_rows(stream *io, const ilsa_solver *s, const box *b, void *field, size_t size) {
-    size_t length = (size_t)(b->x1 - b->x0 + 1) * size;
-    for (int j = b->y0; j <= b->y1; j++) {
-        size_t at = ((size_t)j * (size_t)s->mesh.nx + (size_t)b->x0) * size;
-        pass(io, (char *)field + at, length);
+/* The fracture but for its fields and paths, and the longest step allowed. */
+static void pass_fracture(stream *io, fracture *f, pace *p) {
+    double *numbers[] = {&f->mu_prime,     &f->time,          &f->dt,        &f->injected,
+                         &f->leaked,       &f->volume,        &f->leak_rate, &f->width_most,
+                         &f->front_change, &f->front_advance, &p->dt_limit};
+    int *counts[] = {&f->footprint.x0, &f->footprint.x1, &f->footprint.y0, &f->footprint.y1,
+                     &f->unknowns};
+    pass_flags(io, f);
+    for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++) {
+        pass(io, numbers[k], sizeof *numbers[k]);
+    }
+    for (size_t k = 0; k < sizeof counts / sizeof *counts; k++) {
+        pass(io, counts[k], sizeof *counts[k]);
     }
 }
 
-static void pass_fields(stream *io, const ilsa_solver *s, const box *b, const fields *f) {
-    pass_rows(io, s, b, f->width, sizeof *f->width);
-    pass_rows(io, s, b, f->pressure, sizeof *f->pressure);
-    pass_rows(io, s, b, f->level, sizeof *f->level);
-    pass_rows(io, s, b, f->speed, sizeof *f->speed);
-    pass_rows(io, s, b, f->kind, sizeof *f->kind);
-    if (f->trigger) {
-        pass_rows(io, s, b, f->trigger, sizeof *f->trigger);
-        pass_rows(io, s, b, f->spread, sizeof *f->spread);
-        pass_rows(io, s, b, f->leaked, sizeof *f->leaked);
+/* The fields of a box of the mesh, in the order of the table. */
+static void pass_fields(stream *io, const model *m, const box *b, const fields *f) {
+    for (int row = 0; row < FIELD_COUNT; row++) {
+        if (!ilsai_snapshot_has(row, ilsai_model_leaks(m))) {
+            continue;
+        }
+        char *array = ilsai_field(f, row);
+        size_t size = ilsai_field_rows[row].size;
+        for (int j = b->y0; j <= b->y1; j++) {
+            size_t at = ((size_t)j * (size_t)m->mesh.nx + (size_t)b->x0) * size;
+            pass(io, array + at, ilsai_box_columns(b) * size);
+        }
     }
 }
 
 /* Knots that are not in use are written as zero. */
-static void pass_record(stream *io, tip_record *record) {
-    tip_record packed;
+static void pass_path(stream *io, tip_path *path) {
+    tip_path packed;
     memset(&packed, 0, sizeof packed);
-    packed.cell = record->cell;
-    packed.history.count = record->history.count;
-    for (int k = 0; k < record->history.count; k++) {
-        packed.history.t[k] = record->history.t[k];
-        packed.history.ell[k] = record->history.ell[k];
+    packed.cell = path->cell;
+    packed.history.count = path->history.count;
+    for (int k = 0; k < path->history.count; k++) {
+        packed.history.t[k] = path->history.t[k];
+        packed.history.ell[k] = path->history.ell[k];
     }
     pass(io, &packed, sizeof packed);
-    *record = packed;
+    *path = packed;
 }
 
 static void write_stress(stream *io, const ilsa_solver *s) {
-    size_t size = ilsai_stress_image_size(s->stress);
+    size_t size = ilsai_stress_image_size(s->model.stress);
     uint64_t length = size;
     pass(io, &length, sizeof length);
     if (io->out && !io->failed && size <= io->size - io->at) {
-        ilsai_stress_write(s->stress, io->out + io->at);
+        ilsai_stress_write(s->model.stress, io->out + io->at);
     }
     io->failed |= size > io->size - io->at;
     io->at += io->failed ? 0 : size;
 }
 
-/* Everything after the header; the same order as read_body. */
+/* Everything after the header, in the order in which it is read. */
 static void write_body(stream *io, const ilsa_solver *s) {
     identity id = identify(s);
-    state now = s->now;
-    box region = ilsai_solver_region(s, &s->now.footprint);
-    int32_t tips = s->tips.count;
+    fracture f = s->fracture;
+    pace p = s->pace;
+    box region = ilsai_fracture_region(&s->model.mesh, &f.footprint);
+    int32_t paths = f.paths.count;
     pass(io, &id, sizeof id);
-    pass_state(io, &now);
-    for (int k = 0; k < s->def.source_count; k++) {
-        ilsa_source_def def = s->sources[k].def;
+    pass_fracture(io, &f, &p);
+    for (int k = 0; k < s->model.sources.count; k++) {
+        ilsa_source_def def = s->model.sources.at[k].def;
         pass(io, &def, sizeof def);
     }
     write_stress(io, s);
-    pass(io, &tips, sizeof tips);
-    for (int k = 0; k < s->tips.count; k++) {
-        tip_record record = s->tips.at[k];
-        pass_record(io, &record);
+    pass(io, &paths, sizeof paths);
+    for (int k = 0; k < f.paths.count; k++) {
+        tip_path path = f.paths.at[k];
+        pass_path(io, &path);
     }
-    pass_fields(io, s, &region, &s->field);
+    pass_fields(io, &s->model, &region, &f.cells);
 }
 
-ilsa_status ilsa_snapshot_save(const ilsa_solver *solver, void *buffer, size_t *size) {
+static ilsa_status save(const ilsa_solver *solver, void *buffer, size_t *size) {
     error_text *error = ilsai_thread_error();
-    ilsa_status status = ilsai_check_pointer(error, "solver", solver);
-    status = status ? status : ilsai_check_pointer(error, "size", size);
-    status = status ? status : ilsai_check_started(solver, error);
-    if (status != ILSA_OK) {
-        return status;
-    }
+    ILSAI_TRY(ilsai_check_pointer(error, "solver", solver));
+    ILSAI_TRY(ilsai_check_pointer(error, "size", size));
+    ILSAI_TRY(ilsai_fracture_check(&solver->fracture, error));
     stream count = {.at = sizeof(header), .size = SIZE_MAX};
     write_body(&count, solver);
     size_t room = *size;
@@ -219,6 +212,10 @@ ilsa_status ilsa_snapshot_save(const ilsa_solver *solver, void *buffer, size_t *
     head.checksum = checksum(io.out + sizeof head, count.at - sizeof head);
     memcpy(buffer, &head, sizeof head);
     return ILSA_OK;
+}
+
+ilsa_status ilsa_snapshot_save(const ilsa_solver *solver, void *buffer, size_t *size) {
+    return ilsai_fail_reading(save(solver, buffer, size));
 }
 
 static ilsa_status check_header(ilsa_solver *s, const unsigned char *image, size_t size) {
@@ -243,32 +240,34 @@ static ilsa_status check_header(ilsa_solver *s, const unsigned char *image, size
     return ILSA_OK;
 }
 
-/* What is read before the solver is touched. */
+/* What is read, or made for it, before the solver is touched. */
 typedef struct incoming {
-    state now;
-    ilsa_mesh_def mesh;
+    fracture fracture; /* without fields */
+    pace pace;
     ilsa_source_def *sources;
-    ilsa_stress *stress;
-    tip_records tips;
+    model model;         /* the solver's, with mesh, stress and sigma of the snapshot */
+    elasticity *elastic; /* for another cell size, NULL where it is the solver's */
 } incoming;
 
 static void release(incoming *from) {
-    free(from->sources);
-    ilsa_stress_destroy(&from->stress);
-    free(from->tips.at);
+    ilsai_tip_paths_destroy(&from->fracture.paths);
+    ilsai_release(from->sources);
+    ilsa_stress_destroy(&from->model.stress);
+    ilsai_release(from->model.sigma);
+    ilsai_elasticity_destroy(&from->elastic);
 }
 
 /* Rates change, places do not. */
-static ilsa_status read_sources(stream *io, const ilsa_solver *s, incoming *from) {
-    size_t count = (size_t)s->def.source_count, size = count * sizeof *from->sources;
-    from->sources = calloc(count, sizeof *from->sources);
+static ilsa_status read_sources(stream *io, const sources *own, incoming *from) {
+    size_t count = (size_t)own->count;
+    from->sources = ilsai_allocate_zeroed(count, sizeof *from->sources);
     if (!from->sources) {
         return ILSA_ERR_MEMORY;
     }
-    pass(io, from->sources, size);
-    for (int k = 0; k < s->def.source_count && !io->failed; k++) {
-        const ilsa_source_def *own = &s->sources[k].def, *seen = &from->sources[k];
-        if (seen->x != own->x || seen->y != own->y) {
+    pass(io, from->sources, count * sizeof *from->sources);
+    for (int k = 0; k < own->count && !io->failed; k++) {
+        const ilsa_source_def *def = &own->at[k].def, *seen = &from->sources[k];
+        if (seen->x != def->x || seen->y != def->y) {
             return ILSA_ERR_MISMATCH;
         }
         if (!(seen->rate >= 0 && seen->rate <= ILSAI_MAGNITUDE_MOST)) {
@@ -284,37 +283,36 @@ static ilsa_status read_stress(stream *io, incoming *from) {
     if (io->failed || length > io->size - io->at) {
         return ILSA_ERR_SNAPSHOT;
     }
-    ilsa_status status = ilsai_stress_read(io->in + io->at, (size_t)length, &from->stress);
+    ilsa_status status = ilsai_stress_read(io->in + io->at, (size_t)length, &from->model.stress);
     io->at += (size_t)length;
     return status;
 }
 
-static ilsa_status read_tips(stream *io, const ilsa_solver *s, incoming *from) {
+static ilsa_status read_paths(stream *io, incoming *from) {
+    tip_paths *paths = &from->fracture.paths;
     int32_t count = 0;
     pass(io, &count, sizeof count);
-    size_t left = io->size - io->at;
-    if (io->failed || count < 0 || (size_t)count > left / sizeof(tip_record)) {
+    size_t left = io->size - io->at, cells = ilsai_mesh_cells(&from->model.mesh);
+    if (io->failed || count < 0 || (size_t)count > left / sizeof(tip_path)) {
         return ILSA_ERR_SNAPSHOT;
     }
-    if (ilsai_asymptote_records_reserve(&from->tips, count) != ILSA_OK) {
-        return ILSA_ERR_MEMORY;
-    }
-    for (from->tips.count = 0; from->tips.count < count; from->tips.count++) {
-        tip_record *record = &from->tips.at[from->tips.count];
-        memcpy(record, io->in + io->at, sizeof *record);
-        io->at += sizeof *record;
-        int after = from->tips.count > 0 ? record[-1].cell : -1;
-        if (record->cell <= after ||
-            !ilsai_snapshot_record_is_sound(record, ilsai_mesh_cells(&s->mesh), from->now.time)) {
+    ILSAI_TRY(ilsai_tip_paths_reserve(paths, count));
+    for (paths->count = 0; paths->count < count; paths->count++) {
+        tip_path *path = &paths->at[paths->count];
+        memcpy(path, io->in + io->at, sizeof *path);
+        io->at += sizeof *path;
+        int after = paths->count > 0 ? path[-1].cell : -1;
+        if (path->cell <= after ||
+            !ilsai_snapshot_path_is_sound(path, cells, from->fracture.time)) {
             return ILSA_ERR_SNAPSHOT;
         }
     }
     return ILSA_OK;
 }
 
-/* The material's, or where it has none one that can stand for it. */
-static int is_viscosity(const ilsa_solver *s, double mu_prime) {
-    return s->inviscid ? isfinite(mu_prime) && mu_prime > 0 : mu_prime == s->material.mu_prime;
+/* Whether it is the material's viscosity, or where that has none one that can stand for it. */
+static bool is_viscosity(const model *m, double mu_prime) {
+    return m->inviscid ? isfinite(mu_prime) && mu_prime > 0 : mu_prime == m->material.mu_prime;
 }
 
 /* Reads all but the fields; *io is left at them. */
@@ -327,77 +325,81 @@ static ilsa_status read_head(stream *io, const ilsa_solver *s, incoming *from) {
     if (!same_definition(&id, &own)) {
         return ILSA_ERR_MISMATCH;
     }
-    from->mesh = (ilsa_mesh_def){id.nx, id.ny, id.dx, id.dy};
-    pass(io, &from->now, sizeof from->now);
-    if (io->failed || !ilsai_snapshot_state_is_sound(&from->now, &from->mesh) ||
-        !is_viscosity(s, from->now.mu_prime)) {
+    from->model = s->model;
+    from->model.stress = NULL;
+    from->model.sigma = NULL;
+    from->model.mesh = (ilsa_mesh_def){id.nx, id.ny, id.dx, id.dy};
+    pass_fracture(io, &from->fracture, &from->pace);
+    if (io->failed || !(from->pace.dt_limit > 0) ||
+        !ilsai_snapshot_fracture_is_sound(&from->fracture, &from->model.mesh) ||
+        !is_viscosity(&s->model, from->fracture.mu_prime)) {
         return ILSA_ERR_SNAPSHOT;
     }
-    ilsa_status status = read_sources(io, s, from);
-    status = status ? status : read_stress(io, from);
-    return status ? status : read_tips(io, s, from);
+    ILSAI_TRY(read_sources(io, &s->model.sources, from));
+    ILSAI_TRY(read_stress(io, from));
+    return read_paths(io, from);
 }
 
-/* The fields of the image must fill what is left of it exactly, and be those of a fracture. */
-static int fields_fit(const ilsa_solver *s, const stream *io, const box *region,
-                      const box *footprint) {
+/* The fields of the snapshot must fill what is left of it exactly, and be those of a fracture. */
+static bool fields_fit(const stream *io, const incoming *from, const box *region,
+                       const fields *own) {
     stream count = {.at = io->at, .size = SIZE_MAX};
-    snapshot_fields seen = {io->in + io->at, *region, *footprint, ilsai_has_leakoff(s)};
-    pass_fields(&count, s, region, &s->field);
+    snapshot_fields seen = {io->in + io->at, *region, from->fracture.footprint,
+                            ilsai_model_leaks(&from->model)};
+    pass_fields(&count, &from->model, region, own);
     return count.at == io->size && ilsai_snapshot_fields_are_sound(&seen);
 }
 
-/* An elasticity for another cell size, NULL if the size is the same. */
-static ilsa_status other_elasticity(const ilsa_solver *s, const ilsa_mesh_def *mesh,
-                                    elasticity **e) {
-    *e = NULL;
-    return ilsai_mesh_same(mesh, &s->mesh) ? ILSA_OK
-                                           : ilsai_elasticity_create(s->material.E_prime, mesh->dx,
-                                                                     mesh->dy, s->def.product, e);
+/* Makes what the solver needs for the mesh and the stress of the snapshot. */
+static ilsa_status prepare(const ilsa_solver *s, incoming *from) {
+    const ilsa_mesh_def *mesh = &from->model.mesh;
+    from->model.sigma = ilsai_allocate(ilsai_mesh_cells(mesh), sizeof *from->model.sigma);
+    if (!from->model.sigma) {
+        return ILSA_ERR_MEMORY;
+    }
+    if (ilsai_model_fill_stress(&from->model) != ILSA_OK) {
+        return ILSA_ERR_SNAPSHOT; /* a stress per cell of another mesh, or beyond any */
+    }
+    if (ilsai_mesh_same(mesh, &s->model.mesh)) {
+        return ILSA_OK;
+    }
+    return ilsai_elasticity_create(s->model.material.E_prime, mesh->dx, mesh->dy,
+                                   s->model.options.product, &from->elastic);
 }
 
-static void adopt(ilsa_solver *s, incoming *from, elasticity *e, stream *io) {
-    if (s->now.started) {
-        box old = ilsai_solver_region(s, &s->now.footprint);
-        ilsai_fields_clear_box(&s->field, &s->mesh, &old);
+/* Takes over what was read and made; the solver's own goes to `from` to be released. */
+static void adopt(ilsa_solver *s, incoming *from, const box *region, stream *io) {
+    model old_model = s->model;
+    tip_paths old_paths = s->fracture.paths;
+    ilsai_fracture_clear(&s->fracture, &s->model.mesh);
+    if (from->elastic) {
+        elasticity *old_elastic = s->numerics.elastic;
+        s->numerics.elastic = from->elastic;
+        from->elastic = old_elastic;
     }
-    if (e) {
-        ilsai_elasticity_destroy(&s->elastic);
-        s->elastic = e;
+    from->fracture.cells = s->fracture.cells;
+    s->fracture = from->fracture;
+    s->pace.dt_limit = from->pace.dt_limit;
+    s->model = from->model;
+    ilsai_model_set_viscosity(&s->model, s->fracture.mu_prime);
+    for (int k = 0; k < s->model.sources.count; k++) {
+        s->model.sources.at[k].def.rate = from->sources[k].rate;
     }
-    ilsa_stress *stress = s->stress;
-    tip_records tips = s->tips;
-    s->mesh = from->mesh;
-    s->now = from->now;
-    ilsai_solver_set_viscosity(s, from->now.mu_prime);
-    s->stress = from->stress;
-    s->tips = from->tips;
-    from->stress = stress;
-    from->tips = tips;
-    for (int k = 0; k < s->def.source_count; k++) {
-        s->sources[k].def.rate = from->sources[k].rate;
-    }
-    ilsai_sources_place(s);
-    box region = ilsai_solver_region(s, &s->now.footprint);
-    pass_fields(io, s, &region, &s->field);
+    ilsai_sources_place(&s->model.sources, &s->model.mesh);
+    pass_fields(io, &s->model, region, &s->fracture.cells);
+    from->fracture.paths = old_paths;
+    from->model = old_model;
 }
 
-/* Takes over what was read. The stress of an image fits its own mesh, so filling cannot fail. */
-static ilsa_status finish(ilsa_solver *s, incoming *from, stream *io) {
-    elasticity *e;
-    ilsa_solver like = *s;
-    like.mesh = from->mesh;
-    box region = ilsai_solver_region(&like, &from->now.footprint);
-    if (!fields_fit(&like, io, &region, &from->now.footprint) ||
-        ilsai_stress_fill(from->stress, &from->mesh, s->source_term) != ILSA_OK) {
+static ilsa_status restore(ilsa_solver *s, stream *io, incoming *from) {
+    ILSAI_TRY(read_head(io, s, from));
+    box region = ilsai_fracture_region(&from->model.mesh, &from->fracture.footprint);
+    if (!fields_fit(io, from, &region, &s->fracture.cells)) {
         return ILSA_ERR_SNAPSHOT;
     }
-    ilsa_status status = other_elasticity(s, &from->mesh, &e);
-    if (status == ILSA_OK) {
-        adopt(s, from, e, io);
-        status = ilsai_solver_fill_stress(s);
-    }
-    return status;
+    ILSAI_TRY(prepare(s, from));
+    adopt(s, from, &region, io);
+    return ILSA_OK;
 }
 
 ilsa_status ilsa_snapshot_restore(ilsa_solver *solver, const void *buffer, size_t size) {
@@ -405,14 +407,10 @@ ilsa_status ilsa_snapshot_restore(ilsa_solver *solver, const void *buffer, size_
         error_text *error = solver ? &solver->error : ilsai_thread_error();
         return ilsai_check_pointer(error, solver ? "buffer" : "solver", NULL);
     }
-    ilsa_status status = check_header(solver, buffer, size);
-    if (status != ILSA_OK) {
-        return status;
-    }
+    ILSAI_TRY(check_header(solver, buffer, size));
     incoming from = {0};
     stream io = {.in = buffer, .at = sizeof(header), .size = size};
-    status = read_head(&io, solver, &from);
-    status = status ? status : finish(solver, &from, &io);
+    ilsa_status status = restore(solver, &io, &from);
     release(&from);
     return status == ILSA_OK ? ILSA_OK
            : status == ILSA_ERR_MISMATCH

@@ -1,30 +1,30 @@
-/* Whether what an image of a solver says can be the state of one. */
+/* Whether what a snapshot says can be so of a fracture. */
 #ifndef ILSAI_SNAPSHOT_CHECK_H
 #define ILSAI_SNAPSHOT_CHECK_H
 
-#include "step/state.h"
+#include "step/fracture.h"
 
-/* Flags 0 or 1, numbers finite and in their ranges, the footprint off the edge of the mesh. */
-int ilsai_snapshot_state_is_sound(const state *now, const ilsa_mesh_def *mesh);
+/* Numbers finite and in their ranges, the footprint off the edge of the mesh. */
+bool ilsai_snapshot_fracture_is_sound(const fracture *f, const ilsa_mesh_def *mesh);
 
-/* A path in a cell of the mesh: its knots in order, none after now. */
-int ilsai_snapshot_record_is_sound(const tip_record *record, size_t cells, double now);
+/* A path through a cell of the mesh: its knots in order, none after now. */
+bool ilsai_snapshot_path_is_sound(const tip_path *path, size_t cells, double now);
 
-/*
- * The fields of a region as they lie in an image, one after the other and not aligned: width,
- * pressure, level, speed, kind, and with leak-off trigger, spread, leaked.
- */
+/* Whether a snapshot holds a field of the table, with or without leak-off. */
+bool ilsai_snapshot_has(int row, bool leakoff);
+
+/* The fields of a region as they lie in a snapshot, in the order of the table and not aligned. */
 typedef struct snapshot_fields {
     const unsigned char *at;
     box region, footprint;
-    int leak_off;
+    bool leakoff;
 } snapshot_fields;
 
 /*
- * No cell is wet outside the footprint; channel cells have a width, dry ones none and no pressure;
- * the centres of dry cells lie beyond the front, those of channel cells behind it; survey cells are
- * those at the rim of the channel, and there is one.
+ * Whether no cell is wet outside the footprint; channel cells have a width, dry ones none and no
+ * pressure; the centres of dry cells lie beyond the front, those of channel cells behind it; survey
+ * cells are the channel cells beside others, and there is one.
  */
-int ilsai_snapshot_fields_are_sound(const snapshot_fields *f);
+bool ilsai_snapshot_fields_are_sound(const snapshot_fields *f);
 
 #endif

@@ -5,6 +5,12 @@
 #include <stdio.h>
 #include <string.h>
 
+/* The message of the thread, and whether it is that of a call that only reads a solver. */
+static _Thread_local struct {
+    error_text error;
+    bool of_reading;
+} of_thread;
+
 const char *ilsa_status_text(ilsa_status status) {
     switch (status) {
     case ILSA_OK:
@@ -28,7 +34,7 @@ const char *ilsa_status_text(ilsa_status status) {
     case ILSA_ERR_MEMORY:
         return "out of memory";
     case ILSA_ERR_STATE:
-        return "there is no fracture: start one first";
+        return "there is no fracture, or it is in no state for this call";
     case ILSA_ERR_MISMATCH:
         return "handles or definitions do not belong together";
     case ILSA_ERR_SNAPSHOT:
@@ -48,13 +54,22 @@ ilsa_status ilsai_fail(error_text *error, ilsa_status status, const char *format
         vsnprintf(text, sizeof text, format, arguments);
         va_end(arguments);
         memcpy(error->text, text, strlen(text) + 1);
+        of_thread.of_reading = false;
     }
     return status;
 }
 
 error_text *ilsai_thread_error(void) {
-    static _Thread_local error_text error;
-    return &error;
+    return &of_thread.error;
+}
+
+ilsa_status ilsai_fail_reading(ilsa_status status) {
+    of_thread.of_reading = status != ILSA_OK || of_thread.of_reading;
+    return status;
+}
+
+bool ilsai_reading_failed(void) {
+    return of_thread.of_reading;
 }
 
 static ilsa_status refuse(error_text *error, const char *name, double value, const char *range) {

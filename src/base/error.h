@@ -3,6 +3,7 @@
 #define ILSAI_ERROR_H
 
 #include <ilsa/status.h>
+#include <stdbool.h>
 
 /* Makes a call that answers with a status; on any but ILSA_OK the calling function returns it. */
 #define ILSAI_TRY(call)                                                                            \
@@ -27,6 +28,14 @@ ilsa_status ilsai_fail(error_text *error, ilsa_status status, const char *format
 
 /* The message of the calling thread, for creates and for handles that hold no message. */
 error_text *ilsai_thread_error(void);
+
+/*
+ * Calls that only read a solver cannot leave their message with it: the thread's holds it, and is
+ * the one to be shown until a later call of the thread fails. Returns the status.
+ */
+ilsa_status ilsai_fail_reading(ilsa_status status);
+/* Whether the last failure of the calling thread was of such a call. */
+bool ilsai_reading_failed(void);
 
 /* ILSA_OK or ILSA_ERR_VALUE with the message "name = value: must be ...". */
 ilsa_status ilsai_check_finite(error_text *error, const char *name, double value);

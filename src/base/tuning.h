@@ -91,6 +91,8 @@
 #define ILSAI_CRAWL_REFUSED 400
 #define ILSAI_CRAWL_TIME    1.1
 
+/* Source: the most that one solver may have. */
+#define ILSAI_SOURCES 1000
 /* Source: closer to a cell edge than this, in cells, it feeds the cells on both sides. */
 #define ILSAI_EDGE_CELLS 1e-9
 /* Shape of the front: how far along it a parabola is fitted, in cells; cosine above which normals
@@ -133,7 +135,8 @@
 #define ILSAI_COARSEN_REACH 3.0
 
 /* Levels 1 .. 5: advance of the front per step and tolerance of the front, both in cells. */
-#define ILSAI_LEVELS 5
+#define ILSAI_LEVELS        5
+#define ILSAI_LEVEL_DEFAULT 3
 #define ILSAI_LEVEL_STEP                                                                           \
     { 0.75, 0.6, 0.5, 0.25, 0.1 }
 #define ILSAI_LEVEL_TOLERANCE                                                                      \

@@ -1,23 +1,36 @@
 #include "front/geometry.h"
 
+#include "base/fields.h"
 #include "base/tuning.h"
 #include <math.h>
+#include <stdbool.h>
+
+static bool leads_out(const grid *g, const unsigned char *kind, int i, int j, int face) {
+    int other = ilsai_grid_neighbour(g, i, j, face);
+    return other < 0 || !ilsai_is_channel(kind[other]);
+}
+
+double ilsai_geometry_size(const grid *g, const unsigned char *kind, int i, int j) {
+    bool along_x = leads_out(g, kind, i, j, GRID_LEFT) || leads_out(g, kind, i, j, GRID_RIGHT);
+    bool along_y = leads_out(g, kind, i, j, GRID_DOWN) || leads_out(g, kind, i, j, GRID_UP);
+    return along_x && along_y ? ilsai_grid_h(g) : along_x ? g->dx : g->dy;
+}
 
 typedef struct vector {
     double x, y;
 } vector;
 
-static int on_mesh(const ilsa_solver *s, int i, int j) {
-    return i >= 0 && i < s->mesh.nx && j >= 0 && j < s->mesh.ny;
+static bool on_mesh(const front_view *v, int i, int j) {
+    return i >= 0 && i < v->g->nx && j >= 0 && j < v->g->ny;
 }
 
 /* Whether the march has set the level of a cell: not so in the channel behind the survey cells. */
-static double level_at(const ilsa_solver *s, int i, int j) {
-    if (!on_mesh(s, i, j)) {
+static double level_at(const front_view *v, int i, int j) {
+    if (!on_mesh(v, i, j)) {
         return INFINITY;
     }
-    int cell = j * s->mesh.nx + i;
-    return s->field.kind[cell] == ILSA_CELL_CHANNEL ? INFINITY : s->field.level[cell];
+    int cell = j * v->g->nx + i;
+    return v->kind[cell] == ILSA_CELL_CHANNEL ? INFINITY : v->level[cell];
 }
 
 /* Slope of the level along one axis from the lower of the two neighbours, 0 if both are higher. */
@@ -30,26 +43,26 @@ static double upwind_slope(double here, double below, double above, double d) {
 }
 
 /* Normal of the front in a cell outside the channel, pointing outwards; 0 where it is not known. */
-static vector normal_in(const ilsa_solver *s, int i, int j) {
-    double here = level_at(s, i, j);
+static vector normal_in(const front_view *v, int i, int j) {
+    double here = level_at(v, i, j);
     vector n = {0, 0};
     if (!isfinite(here)) {
         return n;
     }
-    n.x = upwind_slope(here, level_at(s, i - 1, j), level_at(s, i + 1, j), s->mesh.dx);
-    n.y = upwind_slope(here, level_at(s, i, j - 1), level_at(s, i, j + 1), s->mesh.dy);
+    n.x = upwind_slope(here, level_at(v, i - 1, j), level_at(v, i + 1, j), v->g->dx);
+    n.y = upwind_slope(here, level_at(v, i, j - 1), level_at(v, i, j + 1), v->g->dy);
     double size = hypot(n.x, n.y);
     return size > 0 ? (vector){n.x / size, n.y / size} : n;
 }
 
 /* Mean normal of the cells across the open faces of survey cell (i, j). */
-static vector normal_seen(const ilsa_solver *s, int i, int j) {
+static vector normal_seen(const front_view *v, int i, int j) {
     static const int side[GRID_FACES][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
     vector sum = {0, 0};
     for (int face = 0; face < GRID_FACES; face++) {
         int a = i + side[face][0], b = j + side[face][1];
-        if (on_mesh(s, a, b) && s->field.kind[b * s->mesh.nx + a] < ILSA_CELL_SURVEY) {
-            vector n = normal_in(s, a, b);
+        if (on_mesh(v, a, b) && !ilsai_is_channel(v->kind[b * v->g->nx + a])) {
+            vector n = normal_in(v, a, b);
             sum.x += n.x;
             sum.y += n.y;
         }
@@ -97,21 +110,21 @@ static double fitted_curvature(const parabola *p, double span) {
 }
 
 /* Curvature of the front through the tip cells around the point it has in front of (i, j). */
-static double curvature_at(const ilsa_solver *s, int i, int j, vector n, double distance) {
-    double size = fmax(s->mesh.dx, s->mesh.dy), reach = ILSAI_GEOMETRY_REACH * size;
-    double x0 = ilsai_mesh_x(&s->mesh, i) + distance * n.x;
-    double y0 = ilsai_mesh_y(&s->mesh, j) + distance * n.y;
-    int wx = (int)ceil(reach / s->mesh.dx) + 1, wy = (int)ceil(reach / s->mesh.dy) + 1;
+static double curvature_at(const front_view *v, int i, int j, vector n, double distance) {
+    double size = fmax(v->g->dx, v->g->dy), reach = ILSAI_GEOMETRY_REACH * size;
+    double x0 = ilsai_grid_x(v->g, i) + distance * n.x;
+    double y0 = ilsai_grid_y(v->g, j) + distance * n.y;
+    int wx = (int)ceil(reach / v->g->dx) + 1, wy = (int)ceil(reach / v->g->dy) + 1;
     parabola p = {{0}, {0}, INFINITY, -INFINITY};
     for (int b = j - wy; b <= j + wy; b++) {
         for (int a = i - wx; a <= i + wx; a++) {
-            if (!on_mesh(s, a, b) || s->field.kind[b * s->mesh.nx + a] != ILSA_CELL_TIP) {
+            if (!on_mesh(v, a, b) || v->kind[b * v->g->nx + a] != ILSA_CELL_TIP) {
                 continue;
             }
-            vector m = normal_in(s, a, b);
-            double level = s->field.level[b * s->mesh.nx + a];
-            double x = ilsai_mesh_x(&s->mesh, a) - level * m.x - x0;
-            double y = ilsai_mesh_y(&s->mesh, b) - level * m.y - y0;
+            vector m = normal_in(v, a, b);
+            double level = v->level[b * v->g->nx + a];
+            double x = ilsai_grid_x(v->g, a) - level * m.x - x0;
+            double y = ilsai_grid_y(v->g, b) - level * m.y - y0;
             double xi = -x * n.y + y * n.x;
             if (m.x * n.x + m.y * n.y > ILSAI_GEOMETRY_ALIKE && fabs(xi) <= reach) {
                 add_point(&p, xi, x * n.x + y * n.y);
@@ -124,34 +137,34 @@ static double curvature_at(const ilsa_solver *s, int i, int j, vector n, double 
 }
 
 /* Whether a cell can tell the width further in; then its depth behind the survey is set. */
-static int try_inner(const ilsa_solver *s, survey_cell *survey, int i, int j, vector n, int di,
-                     int dj, unsigned char least) {
-    if (!on_mesh(s, i + di, j + dj)) {
-        return 0;
+static bool try_inner(const front_view *v, survey_cell *survey, int i, int j, vector n, int di,
+                      int dj, unsigned char least) {
+    if (!on_mesh(v, i + di, j + dj)) {
+        return false;
     }
-    int cell = (j + dj) * s->mesh.nx + i + di;
-    double along = -(di * s->mesh.dx * n.x + dj * s->mesh.dy * n.y);
-    double across = -di * s->mesh.dx * n.y + dj * s->mesh.dy * n.x;
+    int cell = (j + dj) * v->g->nx + i + di;
+    double along = -(di * v->g->dx * n.x + dj * v->g->dy * n.y);
+    double across = -di * v->g->dx * n.y + dj * v->g->dy * n.x;
     double depth = along - 0.5 * survey->curvature * across * across;
-    if (s->field.kind[cell] < least || !(depth > 0)) {
-        return 0;
+    if (v->kind[cell] < least || !(depth > 0)) {
+        return false;
     }
-    survey->inner = ilsai_grid_fold(&s->g, i + di, j + dj);
+    survey->inner = ilsai_grid_fold(v->g, i + di, j + dj);
     survey->depth = depth;
-    return 1;
+    return true;
 }
 
 /*
  * The cell behind (i, j) along the normal, under the same stress: two cells in if the channel is
- * that deep, else the next one. The width follows the tip's only where the stress does not jump.
+ * that deep, else the next one. The width follows the tip's only where the stress has no step.
  */
-static void find_inner(const ilsa_solver *s, survey_cell *survey, int i, int j, vector n) {
-    double cell = s->mesh.dx * fabs(n.x) + s->mesh.dy * fabs(n.y);
-    double di = -n.x * cell / s->mesh.dx, dj = -n.y * cell / s->mesh.dy;
+static void find_inner(const front_view *v, survey_cell *survey, int i, int j, vector n) {
+    double cell = v->g->dx * fabs(n.x) + v->g->dy * fabs(n.y);
+    double di = -n.x * cell / v->g->dx, dj = -n.y * cell / v->g->dy;
     survey->inner = -1;
-    if (!try_inner(s, survey, i, j, n, (int)lround(2 * di), (int)lround(2 * dj),
+    if (!try_inner(v, survey, i, j, n, (int)lround(2 * di), (int)lround(2 * dj),
                    ILSA_CELL_CHANNEL)) {
-        try_inner(s, survey, i, j, n, (int)lround(di), (int)lround(dj), ILSA_CELL_SURVEY);
+        try_inner(v, survey, i, j, n, (int)lround(di), (int)lround(dj), ILSA_CELL_SURVEY);
     }
 }
 
@@ -160,60 +173,59 @@ static double edge_distance(double direction, double size, int k) {
     return direction != 0 ? (k + 0.5) * size / fabs(direction) : INFINITY;
 }
 
-/* Notes the jump between two cells on the ray; height is of the stress nearer to the front. */
-static void note_step(const ilsa_solver *s, survey_cell *survey, double depth, int ahead,
+/* Notes the step between two cells on the ray; height is of the stress nearer to the front. */
+static void note_step(const front_view *v, survey_cell *survey, double depth, int ahead,
                       int behind) {
-    double height = (s->sigma[ahead] - s->sigma[behind]) / s->material.E_prime;
+    double height = (v->sigma[ahead] - v->sigma[behind]) / v->E_prime;
     if (height != 0 && survey->step_count < SURVEY_STEPS) {
         survey->step[survey->step_count++] = (stress_step){depth, height};
     }
 }
 
 /*
- * The jumps of the stress from the centre of (i, j) along n for a length; sign 1: towards the
+ * The steps of the stress from the centre of (i, j) along n for a length; sign 1: towards the
  * front, -1: away from it.
  */
-static void find_steps(const ilsa_solver *s, survey_cell *survey, int i, int j, vector n, int sign,
+static void find_steps(const front_view *v, survey_cell *survey, int i, int j, vector n, int sign,
                        double length) {
     int a = i, b = j, step_x = n.x * sign > 0 ? 1 : -1, step_y = n.y * sign > 0 ? 1 : -1;
     for (int kx = 0, ky = 0;;) {
-        double to_x = edge_distance(n.x, s->mesh.dx, kx), to_y = edge_distance(n.y, s->mesh.dy, ky);
+        double to_x = edge_distance(n.x, v->g->dx, kx), to_y = edge_distance(n.y, v->g->dy, ky);
         double next = fmin(to_x, to_y);
-        int from = b * s->mesh.nx + a;
+        int from = b * v->g->nx + a;
         kx += to_x == next;
         ky += to_y == next;
         a += to_x == next ? step_x : 0;
         b += to_y == next ? step_y : 0;
-        if (!(next < length) || !on_mesh(s, a, b)) {
+        if (!(next < length) || !on_mesh(v, a, b)) {
             return;
         }
-        int to = b * s->mesh.nx + a;
-        note_step(s, survey, -sign * next, sign > 0 ? to : from, sign > 0 ? from : to);
+        int to = b * v->g->nx + a;
+        note_step(v, survey, -sign * next, sign > 0 ? to : from, sign > 0 ? from : to);
     }
 }
 
 /* The nearest behind the cell count first; in front, those that the step may reach. */
-static void set_steps(const ilsa_solver *s, survey_cell *survey, int i, int j, vector n) {
+static void set_steps(const front_view *v, survey_cell *survey, int i, int j, vector n) {
     survey->step_count = 0;
     if (n.x != 0 || n.y != 0) {
-        double cell = s->mesh.dx * fabs(n.x) + s->mesh.dy * fabs(n.y);
-        find_steps(s, survey, i, j, n, 1, survey->s0 + ILSAI_ADVANCE_MAX * survey->h);
-        find_steps(s, survey, i, j, n, -1, ILSAI_STRESS_STEP_REACH * cell);
+        double cell = v->g->dx * fabs(n.x) + v->g->dy * fabs(n.y);
+        find_steps(v, survey, i, j, n, 1, survey->s0 + ILSAI_ADVANCE_MAX * survey->h);
+        find_steps(v, survey, i, j, n, -1, ILSAI_STRESS_STEP_REACH * cell);
     }
 }
 
-void ilsai_geometry_set(const ilsa_solver *s, survey_cell *survey_cells, int count) {
-    int varies = ilsai_stress_varies(s->stress);
+void ilsai_geometry_set(const front_view *v, survey_cell *survey_cells, int count) {
     for (int k = 0; k < count; k++) {
         survey_cell *survey = &survey_cells[k];
-        int i = survey->cell % s->mesh.nx, j = survey->cell / s->mesh.nx;
-        vector n = normal_seen(s, i, j);
+        int i = survey->cell % v->g->nx, j = survey->cell / v->g->nx;
+        vector n = normal_seen(v, i, j);
         survey->cos_a = fabs(n.x);
         survey->sin_a = fabs(n.y);
-        survey->curvature = curvature_at(s, i, j, n, survey->s0);
-        find_inner(s, survey, i, j, n);
-        if (varies) {
-            set_steps(s, survey, i, j, n);
+        survey->curvature = curvature_at(v, i, j, n, survey->s0);
+        find_inner(v, survey, i, j, n);
+        if (v->sigma) {
+            set_steps(v, survey, i, j, n);
         }
     }
 }

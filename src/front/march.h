@@ -6,31 +6,7 @@
 #define ILSAI_MARCH_H
 
 #include "base/grid.h"
-#include "tip/asymptote.h"
-#include "tip/stress_step.h"
-
-enum { SURVEY_STEPS = 4 };
-
-/* A survey cell: where the marching starts. */
-typedef struct survey_cell {
-    int cell;
-    double s0;                    /* distance to the front at the start of the step */
-    double h;                     /* cell size along the normal */
-    double cos_a, sin_a;          /* normal of the front as the last step left it, in 0 .. pi/2 */
-    double s;                     /* distance now */
-    double V;                     /* (s - s0) / dt */
-    double w_asymptote, exponent; /* width of the asymptote at s, and d ln w / d ln s of it */
-    double w_asymptote_inner;     /* width of the asymptote where the inner cell is */
-    double w;                     /* width that s and V answer to */
-    double ds_dw;                 /* derivative of s by the width of the cell */
-    double ds_inner;              /* and by that of the inner cell */
-    double slope;                 /* of (4.9) with the second term at s, as last seen: next to s */
-    int inner;    /* cell behind it that tells how the width departs from the asymptote, -1: none */
-    double depth; /* how much deeper that lies */
-    int step_count; /* of the stress on the normal around the cell */
-    stress_step step[SURVEY_STEPS];
-    double curvature; /* of the front, positive where it is convex; 0: not known */
-} survey_cell;
+#include "front/survey_cell.h"
 
 /* The survey cells that a cell's level comes from, and the derivatives -dT / ds of it. */
 enum { FRONT_PARENTS = 4 };

@@ -1,18 +1,8 @@
 #include "front/survey.h"
 
 #include "base/tuning.h"
+#include "tip/asymptote.h"
 #include <math.h>
-
-static int is_open(const ilsa_solver *s, const grid *g, int i, int j, int face) {
-    int other = ilsai_grid_neighbour(g, i, j, face);
-    return other < 0 || s->field.kind[other] < ILSA_CELL_SURVEY;
-}
-
-double ilsai_survey_size(const ilsa_solver *s, const grid *g, int i, int j) {
-    int along_x = is_open(s, g, i, j, GRID_LEFT) || is_open(s, g, i, j, GRID_RIGHT);
-    int along_y = is_open(s, g, i, j, GRID_DOWN) || is_open(s, g, i, j, GRID_UP);
-    return along_x && along_y ? ilsai_grid_h(g) : along_x ? g->dx : g->dy;
-}
 
 self_term_front ilsai_survey_front(const survey_cell *survey) {
     return (self_term_front){survey->s, survey->cos_a, survey->sin_a, survey->exponent};
@@ -33,16 +23,17 @@ double ilsai_survey_step_width(const survey_cell *survey, double s) {
     return sum;
 }
 
-/* What of the mean width of a cell at distance s from the survey's front no jump has brought. */
-static double smooth_width(const ilsa_solver *s, const survey_cell *survey, int cell,
+/* What of the mean width of a cell at distance s from the survey's front no stress step has
+ * brought. */
+static double smooth_width(const survey_widths *widths, const survey_cell *survey, int cell,
                            double distance) {
-    double w = s->trial.width[cell];
+    double w = widths->width[cell];
     return fmax(w - ilsai_survey_step_width(survey, distance), ILSAI_STRESS_STEP_LEFT * w);
 }
 
-double ilsai_survey_smooth_slope(const ilsa_solver *s, const survey_cell *survey) {
-    double w = s->trial.width[survey->cell];
-    return smooth_width(s, survey, survey->cell, survey->s) > ILSAI_STRESS_STEP_LEFT * w
+double ilsai_survey_smooth_slope(const survey_widths *widths, const survey_cell *survey) {
+    double w = widths->width[survey->cell];
+    return smooth_width(widths, survey, survey->cell, survey->s) > ILSAI_STRESS_STEP_LEFT * w
                ? 1
                : ILSAI_STRESS_STEP_LEFT;
 }
@@ -56,19 +47,19 @@ typedef struct first_term {
     double by_cell, by_inner;
 } first_term;
 
-static first_term split_width(const ilsa_solver *s, const survey_cell *survey) {
+static first_term split_width(const survey_widths *widths, const survey_cell *survey) {
     self_term_front seen = ilsai_survey_front(survey);
-    double mean = ilsai_self_term_mean(s->mesh.dx, s->mesh.dy, &seen);
-    double w = smooth_width(s, survey, survey->cell, survey->s) / mean;
-    first_term out = {w, ilsai_survey_smooth_slope(s, survey) / mean, 0};
+    double mean = ilsai_self_term_mean(widths->dx, widths->dy, &seen);
+    double w = smooth_width(widths, survey, survey->cell, survey->s) / mean;
+    first_term out = {w, ilsai_survey_smooth_slope(widths, survey) / mean, 0};
     if (survey->inner < 0) {
         return out;
     }
     double deep = survey->s + survey->depth, here = survey->w_asymptote,
            there = survey->w_asymptote_inner;
     seen.s = deep;
-    there *= ilsai_self_term_mean(s->mesh.dx, s->mesh.dy, &seen);
-    double inner = smooth_width(s, survey, survey->inner, deep);
+    there *= ilsai_self_term_mean(widths->dx, widths->dy, &seen);
+    double inner = smooth_width(widths, survey, survey->inner, deep);
     if (!(w * there > 0 && inner > 0)) {
         return out; /* a width that Newton's iteration has brought down to nothing */
     }
@@ -87,27 +78,27 @@ static first_term split_width(const ilsa_solver *s, const survey_cell *survey) {
     return out;
 }
 
-void ilsai_survey_settle(const ilsa_solver *s, survey_cell *survey) {
+void ilsai_survey_settle(const survey_widths *widths, survey_cell *survey) {
     double at[] = {survey->s, survey->s + (survey->inner >= 0 ? survey->depth : 0)};
     asymptote_point point[2] = {{sqrt(at[0]), 0, 0.5, 0},
                                 {sqrt(at[1]), 0, 0.5, 0}}; /* at rest, but a factor */
     if (survey->V > 0) {
-        ilsai_asymptote_row(&s->tip_material, survey->V, survey->inner >= 0 ? 2 : 1, at, point);
+        ilsai_asymptote_row(widths->tip_material, survey->V, survey->inner >= 0 ? 2 : 1, at, point);
     }
     survey->w_asymptote = point[0].w;
     survey->exponent = point[0].exponent;
     survey->w_asymptote_inner = point[1].w;
 }
 
-double ilsai_survey_width(const ilsa_solver *s, const survey_cell *survey) {
-    return split_width(s, survey).width;
+double ilsai_survey_width(const survey_widths *widths, const survey_cell *survey) {
+    return split_width(widths, survey).width;
 }
 
 /* One evaluation of (4.9), the second term taken at the distance and velocity that survey has. */
-static double distance_for(const ilsa_solver *s, survey_cell *survey, double dt) {
-    first_term w = split_width(s, survey);
+static double distance_for(const survey_widths *widths, survey_cell *survey, double dt) {
+    first_term w = split_width(widths, survey);
     asymptote_front at =
-        ilsai_asymptote_distance_near(&s->tip_material, w.width, survey->s0, dt, survey->s);
+        ilsai_asymptote_distance_near(widths->tip_material, w.width, survey->s0, dt, survey->s);
     survey->ds_dw = at.ds_dw * w.by_cell;
     survey->ds_inner = at.ds_dw * w.by_inner;
     return at.s;
@@ -131,10 +122,10 @@ static double next_guess(bracket *b, double s, double value, double slope) {
  * A front that has just passed a step of the stress into a barrier leaves the less for the
  * asymptote the further it goes: F falls as steeply as the step is high, which takes more guesses.
  */
-double ilsai_survey_distance(const ilsa_solver *s, survey_cell *survey, double dt) {
+double ilsai_survey_distance(const survey_widths *widths, survey_cell *survey, double dt) {
     survey_cell at = *survey;
-    double value = distance_for(s, &at, dt), limit = ILSAI_SURVEY_SLOPE;
-    double close = ILSAI_SURVEY_CLOSE * s->tolerance * at.h;
+    double value = distance_for(widths, &at, dt), limit = ILSAI_SURVEY_SLOPE;
+    double close = ILSAI_SURVEY_CLOSE * widths->tolerance * at.h;
     double slope = survey->step_count > 0 ? 0 : survey->slope;
     double least = survey->step_count > 0 ? -INFINITY : -limit;
     bracket root = {at.s0, INFINITY};
@@ -147,8 +138,8 @@ double ilsai_survey_distance(const ilsa_solver *s, survey_cell *survey, double d
         }
         at.s = next;
         at.V = (next - at.s0) / dt;
-        ilsai_survey_settle(s, &at);
-        double fresh = distance_for(s, &at, dt);
+        ilsai_survey_settle(widths, &at);
+        double fresh = distance_for(widths, &at, dt);
         slope = fmax(least, fmin(limit, (fresh - value) / (next - last)));
         value = fresh;
     }

@@ -1,26 +1,75 @@
 /*
- * The cells at the front in one pass of a step: after the march, which are wet, their widths (4.18)
- * and leak-off (4.25), and the source terms of the channel (4.8).
+ * The tip cells in one pass of a step: after the march, which cells are wet, their widths (4.18)
+ * and leak-off (4.25), and how both answer to the widths of the survey cells.
  */
 #ifndef ILSAI_TIP_CELLS_H
 #define ILSAI_TIP_CELLS_H
 
-#include "step/state.h"
+#include "base/error.h"
+#include "base/fields.h"
+#include "base/thread_pool.h"
+#include "elastic/elasticity.h"
+#include "front/march.h"
+#include "front/survey.h"
+#include "solve/jacobian.h"
+#include "tip/tip_paths.h"
 
-/* Source terms of the cells that were channel when the step began: they hold for all passes. */
-ilsa_status ilsai_tip_cells_begin(ilsa_solver *s, double dt);
+/* What the tip cells of a pass are found from. */
+typedef struct front_pass {
+    const grid *g;
+    box region; /* cells that the step may touch */
+    const ilsa_material_def *material;
+    const elasticity *elastic;
+    tip_cell_velocity velocity; /* of the front that leak-off counts with */
+    double time, dt;            /* at the start of the step, and its length */
+    /* The fracture at the start of the step. */
+    const fields *old;
+    const tip_paths *old_paths;
+    box old_footprint;
+    fields *trial; /* of the step: kinds, widths, leak-off and the like are written here */
+    /* The front of this pass. */
+    survey_widths widths;
+    const survey_cell *survey_cells;
+    int survey_count;
+    const march *marched;
+    thread_pool *threads; /* that share the loops, NULL: none */
+} front_pass;
+
+/* What a pass has found, beside the fields of the trial; zero to begin with. */
+typedef struct tip_cells {
+    box footprint;   /* of the wet cells and their images */
+    tip_paths paths; /* through the wet cells that the march reached, in its order */
+    /* Per cell that the march reached: the derivative of its width by an advance of the front in
+     * the step; of a front at rest by the logarithm of its stress intensity. */
+    double *width_slope;
+    sensitivity *sensitivities; /* of the survey cells, then of the cells that the march reached */
+    int sensitivity_count;
+    size_t capacity;
+} tip_cells;
+
+void ilsai_tip_cells_destroy(tip_cells *t);
 
 /*
- * Kinds, tip widths, leak-off and footprint for the front as marched. hold: a cell that the front
- * is about to fill keeps the kind it had in the pass before. ILSA_MESH_EDGE, ILSA_ERR_MEMORY,
- * ILSA_STEP_REJECTED (a wet cell is out of the front's reach).
+ * Sets kind, speed, width, leak-off and self terms of the trial's cells for the front as marched.
+ * hold: a cell that the front is about to fill keeps the kind it had in the pass before.
+ * ILSA_MESH_EDGE with a message, ILSA_ERR_MEMORY, ILSA_STEP_REJECTED (a wet cell is out of the
+ * front's reach).
  */
-ilsa_status ilsai_tip_cells_update(ilsa_solver *s, double dt, int hold);
+ilsa_status ilsai_tip_cells_update(tip_cells *t, const front_pass *p, bool hold, error_text *error);
 
 /*
- * How widths and leak-off of the cells at the front, as they are set, answer to the widths of the
+ * Sets the sensitivities of widths, leak-off and self terms at the front to the widths of the
  * survey cells: the derivatives of (4.18) and (4.25) through (4.9) and (4.12).
  */
-void ilsai_tip_cells_sensitivities(ilsa_solver *s, double dt);
+void ilsai_tip_cells_sensitivities(tip_cells *t, const front_pass *p);
+
+/*
+ * For front/sensitivities.c. Volume leaked per area in the step (4.25) if the front were where c
+ * has it, and the path of the front; and the self term beside the front that c, or a survey cell,
+ * sees.
+ */
+double ilsai_tip_cells_leakoff(const front_pass *p, const front_cell *c, tip_cell_history *path);
+self_term ilsai_tip_cells_self_term(const front_pass *p, const front_cell *c);
+self_term ilsai_survey_self_term(const front_pass *p, const survey_cell *survey);
 
 #endif

@@ -1,7 +1,8 @@
 #include "model/material.h"
 
+#include "base/memory.h"
+#include "base/tuning.h"
 #include <math.h>
-#include <stdlib.h>
 
 ilsa_material_def ilsa_material_def_default(void) {
     return (ilsa_material_def){0};
@@ -57,6 +58,17 @@ ilsa_status ilsa_material_def_from_rock(const ilsa_rock *rock, ilsa_material_def
     return status;
 }
 
+/* Products of the parameters and what a solver adds stay in the double range. */
+static ilsa_status check_magnitudes(const ilsa_material_def *def, error_text *error) {
+    const double most = ILSAI_MAGNITUDE_MOST, least = ILSAI_MAGNITUDE_LEAST;
+    ILSAI_TRY(ilsai_check_range(error, "E_prime", def->E_prime, least, most));
+    if (def->mu_prime != 0) {
+        ILSAI_TRY(ilsai_check_range(error, "mu_prime", def->mu_prime, least, most));
+    }
+    ILSAI_TRY(ilsai_check_range(error, "K_prime", def->K_prime, 0, most));
+    return ilsai_check_range(error, "C_prime", def->C_prime, 0, most);
+}
+
 ilsa_status ilsa_material_create(const ilsa_material_def *def, ilsa_material **material) {
     error_text *error = ilsai_thread_error();
     ilsa_status status = ilsai_check_pointer(error, "material", material);
@@ -66,9 +78,11 @@ ilsa_status ilsa_material_create(const ilsa_material_def *def, ilsa_material **m
     status = ilsai_check_pointer(error, "def", def);
     if (!status)
         status = ilsai_material_check(def, error);
+    if (!status)
+        status = check_magnitudes(def, error);
     if (status)
         return status;
-    ilsa_material *made = malloc(sizeof *made);
+    ilsa_material *made = ilsai_allocate(1, sizeof *made);
     if (!made)
         return ilsai_fail(error, ILSA_ERR_MEMORY, "no memory for a material");
     made->def = *def;
@@ -79,16 +93,14 @@ ilsa_status ilsa_material_create(const ilsa_material_def *def, ilsa_material **m
 void ilsa_material_destroy(ilsa_material **material) {
     if (!material)
         return;
-    free(*material);
+    ilsai_release(*material);
     *material = NULL;
 }
 
 ilsa_status ilsa_material_get_def(const ilsa_material *material, ilsa_material_def *def) {
     error_text *error = ilsai_thread_error();
-    ilsa_status status = ilsai_check_pointer(error, "material", material);
-    if (!status)
-        status = ilsai_check_pointer(error, "def", def);
-    if (!status)
-        *def = material->def;
-    return status;
+    ILSAI_TRY(ilsai_check_pointer(error, "material", material));
+    ILSAI_TRY(ilsai_check_pointer(error, "def", def));
+    *def = material->def;
+    return ILSA_OK;
 }

@@ -1,6 +1,7 @@
 #include "model/mesh.h"
 
-#include <stdlib.h>
+#include "base/memory.h"
+#include "base/tuning.h"
 
 enum { CELLS_MIN = 3, CELLS_MAX = 1000000, CELLS_TOTAL_MAX = 1 << 28 };
 
@@ -30,19 +31,17 @@ static ilsa_status check_aspect(error_text *error, const ilsa_mesh_def *def) {
     return ILSA_OK;
 }
 
+static ilsa_status check_size(error_text *error, const char *name, double d) {
+    return ilsai_check_range(error, name, d, ILSAI_MAGNITUDE_LEAST, ILSAI_MAGNITUDE_MOST);
+}
+
 ilsa_status ilsai_mesh_check(const ilsa_mesh_def *def, error_text *error) {
-    ilsa_status status = check_count(error, "nx", def->nx);
-    if (!status)
-        status = check_count(error, "ny", def->ny);
-    if (!status)
-        status = check_total(error, def);
-    if (!status)
-        status = ilsai_check_positive(error, "dx", def->dx);
-    if (!status)
-        status = ilsai_check_positive(error, "dy", def->dy);
-    if (!status)
-        status = check_aspect(error, def);
-    return status;
+    ILSAI_TRY(check_count(error, "nx", def->nx));
+    ILSAI_TRY(check_count(error, "ny", def->ny));
+    ILSAI_TRY(check_total(error, def));
+    ILSAI_TRY(check_size(error, "dx", def->dx));
+    ILSAI_TRY(check_size(error, "dy", def->dy));
+    return check_aspect(error, def);
 }
 
 ilsa_status ilsa_mesh_create(const ilsa_mesh_def *def, ilsa_mesh **mesh) {
@@ -56,7 +55,7 @@ ilsa_status ilsa_mesh_create(const ilsa_mesh_def *def, ilsa_mesh **mesh) {
         status = ilsai_mesh_check(def, error);
     if (status)
         return status;
-    ilsa_mesh *made = malloc(sizeof *made);
+    ilsa_mesh *made = ilsai_allocate(1, sizeof *made);
     if (!made)
         return ilsai_fail(error, ILSA_ERR_MEMORY, "no memory for a mesh");
     made->def = *def;
@@ -67,16 +66,14 @@ ilsa_status ilsa_mesh_create(const ilsa_mesh_def *def, ilsa_mesh **mesh) {
 void ilsa_mesh_destroy(ilsa_mesh **mesh) {
     if (!mesh)
         return;
-    free(*mesh);
+    ilsai_release(*mesh);
     *mesh = NULL;
 }
 
 ilsa_status ilsa_mesh_get_def(const ilsa_mesh *mesh, ilsa_mesh_def *def) {
     error_text *error = ilsai_thread_error();
-    ilsa_status status = ilsai_check_pointer(error, "mesh", mesh);
-    if (!status)
-        status = ilsai_check_pointer(error, "def", def);
-    if (!status)
-        *def = mesh->def;
-    return status;
+    ILSAI_TRY(ilsai_check_pointer(error, "mesh", mesh));
+    ILSAI_TRY(ilsai_check_pointer(error, "def", def));
+    *def = mesh->def;
+    return ILSA_OK;
 }

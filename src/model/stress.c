@@ -76,12 +76,10 @@ static void take(ilsa_stress *stress, ilsa_stress content) {
 
 ilsa_status ilsa_stress_set_uniform(ilsa_stress *stress, double sigma) {
     error_text *error = ilsai_thread_error();
-    ilsa_status status = ilsai_check_pointer(error, "stress", stress);
-    if (!status)
-        status = ilsai_check_finite(error, "sigma", sigma);
-    if (!status)
-        take(stress, (ilsa_stress){.kind = STRESS_UNIFORM, .sigma = sigma});
-    return status;
+    ILSAI_TRY(ilsai_check_pointer(error, "stress", stress));
+    ILSAI_TRY(ilsai_check_finite(error, "sigma", sigma));
+    take(stress, (ilsa_stress){.kind = STRESS_UNIFORM, .sigma = sigma});
+    return ILSA_OK;
 }
 
 static ilsa_status check_values(error_text *error, const char *name, const double *values,
@@ -105,12 +103,9 @@ static ilsa_status check_layers(error_text *error, int interfaces, const double 
                                 const double *sigma) {
     if (interfaces < 1)
         return ilsai_fail(error, ILSA_ERR_VALUE, "interface_count = %d: must be >= 1", interfaces);
-    ilsa_status status = check_values(error, "y", y, (size_t)interfaces);
-    if (!status)
-        status = check_increasing(error, y, (size_t)interfaces);
-    if (!status)
-        status = check_values(error, "sigma", sigma, (size_t)interfaces + 1);
-    return status;
+    ILSAI_TRY(check_values(error, "y", y, (size_t)interfaces));
+    ILSAI_TRY(check_increasing(error, y, (size_t)interfaces));
+    return check_values(error, "sigma", sigma, (size_t)interfaces + 1);
 }
 
 ilsa_status ilsa_stress_set_layers(ilsa_stress *stress, int interface_count, const double *y,

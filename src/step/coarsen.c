@@ -1,16 +1,16 @@
 /*
- * The state moved to cells twice as large, the same number of them (end of section 5.1).
+ * The fracture moved to cells twice as large, the same number of them (end of section 5.1).
  *
  * With an odd count a new cell covers one old cell and the halves of its two neighbours, with an
  * even count two old cells, along each axis.
  */
+#include "base/memory.h"
 #include "base/tuning.h"
-#include "step/state.h"
-#include "step/step.h"
+#include "model/mesh.h"
+#include "step/solver.h"
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* The old cells along one axis that a new one covers, and the part of each. */
 typedef struct cover {
@@ -26,32 +26,23 @@ static cover covered(int n, int i) {
     return c;
 }
 
-/* The new state while it is being made. */
+/* The new fracture while it is being made. */
 typedef struct coarse {
-    const ilsa_solver *s; /* the old one; its trial has the levels all through the channel, its
-                             leak when the front has passed each centre, or will */
+    const model *m;    /* the old model */
+    const fracture *f; /* the old fracture */
+    /* The old level and velocity as the whole channel has them, and trigger times and their spread
+     * as they are or will be; of its kinds those that the inward march reaches are empty. */
+    fields known;
     ilsa_mesh_def mesh;
     fields field;
-    tip_records tips;
+    tip_paths paths;
     box footprint;
     ilsa_stress *stress;
     elasticity *elastic;
 } coarse;
 
-/* What happens to each old cell (its index, and the part of it) under a new one. */
-typedef struct sums {
-    double width, leaked, pressure, wet;
-} sums;
-
-static int on_mesh(const ilsa_mesh_def *m, int i, int j) {
+static bool on_mesh(const ilsa_mesh_def *m, int i, int j) {
     return i >= 0 && i < m->nx && j >= 0 && j < m->ny;
-}
-
-static void add(sums *to, double part, sums from) {
-    to->width += part * from.width;
-    to->leaked += part * from.leaked;
-    to->pressure += part * from.pressure;
-    to->wet += part * from.wet;
 }
 
 /* The k-th of the covered cells to be summed: both ends first, so that the sums of cells that
@@ -60,141 +51,138 @@ static int outside_in(const cover *c, int k) {
     return k == 0 ? 0 : k == 1 ? c->count - 1 : 1;
 }
 
-/* Area-weighted sums of the old fields over the new cell (i, j), in old cells. */
-static sums gather(const coarse *c, int i, int j) {
-    const ilsa_mesh_def *old = &c->s->mesh;
-    const fields *f = &c->s->field;
+/* Area-weighted sum of an old field, or the area for NULL, over the wet cells under the new cell
+ * (i, j), in old cells. */
+static double sum_wet(const coarse *c, const double *field, int i, int j) {
+    const ilsa_mesh_def *old = &c->m->mesh;
     cover across = covered(old->nx, i), up = covered(old->ny, j);
-    sums sum = {0, 0, 0, 0};
+    double sum = 0;
     for (int k = 0; k < up.count; k++) {
-        sums row = {0, 0, 0, 0};
+        double row = 0;
         int b = outside_in(&up, k), oj = up.first + b;
         for (int m = 0; m < across.count; m++) {
             int a = outside_in(&across, m), oi = across.first + a, at = oj * old->nx + oi;
-            if (on_mesh(old, oi, oj) && f->kind[at] != ILSA_CELL_EMPTY) {
-                double leaked = f->leaked ? f->leaked[at] : 0;
-                add(&row, across.part[a], (sums){f->width[at], leaked, f->pressure[at], 1});
+            if (on_mesh(old, oi, oj) && c->f->cells.kind[at] != ILSA_CELL_EMPTY) {
+                row += across.part[a] * (field ? field[at] : 1);
             }
         }
-        add(&sum, up.part[b], row);
+        sum += up.part[b] * row;
     }
     return sum;
 }
 
-/* What is known of the old cell (i, j), which may be off the mesh; infinite where nothing is. */
-typedef double old_value(const coarse *c, int i, int j);
-
 static double on_old(const coarse *c, const double *field, int i, int j) {
-    return on_mesh(&c->s->mesh, i, j) ? field[j * c->s->mesh.nx + i] : INFINITY;
+    return on_mesh(&c->m->mesh, i, j) ? field[j * c->m->mesh.nx + i] : INFINITY;
 }
 
 /* Beyond the last level kept, and off the mesh, it is a cell more than beside it. */
 static double old_level(const coarse *c, int i, int j) {
-    const double *level = c->s->trial.level;
-    double dx = c->s->mesh.dx, dy = c->s->mesh.dy, here = on_old(c, level, i, j);
+    const double *level = c->known.level;
+    double dx = c->m->mesh.dx, dy = c->m->mesh.dy, here = on_old(c, level, i, j);
     double x = fmin(on_old(c, level, i - 1, j), on_old(c, level, i + 1, j)) + dx;
     double y = fmin(on_old(c, level, i, j - 1), on_old(c, level, i, j + 1)) + dy;
     return isfinite(here) ? here : fmin(x, y);
 }
 
-static double old_speed(const coarse *c, int i, int j) {
-    return on_old(c, c->s->trial.speed, i, j);
-}
-
-static double old_passing(const coarse *c, int i, int j) {
-    return on_old(c, c->s->leak, i, j);
-}
-
-static double old_spread(const coarse *c, int i, int j) {
-    return on_old(c, c->s->self_correction, i, j);
+/* What is known of a field in the old cell (i, j), which may be off the mesh; infinite where
+ * nothing is. */
+static double old_value(const coarse *c, int row, int i, int j) {
+    return row == FIELD_level ? old_level(c, i, j) : on_old(c, ilsai_field(&c->known, row), i, j);
 }
 
 /* Mean of the finite values in the old cells around the new centre. */
-static double at_centre(const coarse *c, old_value *value, int i, int j) {
-    const ilsa_mesh_def *old = &c->s->mesh;
+static double at_centre(const coarse *c, int row, int i, int j) {
+    const ilsa_mesh_def *old = &c->m->mesh;
     int odd_x = old->nx % 2, odd_y = old->ny % 2, found = 0;
     int first_x = covered(old->nx, i).first + odd_x, first_y = covered(old->ny, j).first + odd_y;
     double sum = 0;
     for (int b = first_y; b < first_y + 2 - odd_y; b++) {
-        double row = 0;
+        double line = 0;
         for (int a = first_x; a < first_x + 2 - odd_x; a++) {
-            double here = value(c, a, b);
-            row += isfinite(here) ? here : 0;
+            double here = old_value(c, row, a, b);
+            line += isfinite(here) ? here : 0;
             found += isfinite(here);
         }
-        sum += row;
+        sum += line;
     }
     return found > 0 ? sum / found : INFINITY;
 }
 
 /* How far into the channel distances are measured anew. */
-static double depth(const ilsa_solver *s) {
-    return 2 * ILSAI_COARSEN_REACH * hypot(s->mesh.dx, s->mesh.dy);
+static double depth(const ilsa_mesh_def *mesh) {
+    return 2 * ILSAI_COARSEN_REACH * hypot(mesh->dx, mesh->dy);
 }
 
 /*
  * Distances and velocities in the channel behind the survey cells: the march turned inwards. The
  * new survey cells lie up to three old cells further back than the old ones.
  */
-static ilsa_status measure_inwards(ilsa_solver *s) {
-    grid g = ilsai_grid(&s->mesh, 0, 0);
-    box region = ilsai_solver_region(s, &s->now.footprint);
-    survey_cell *survey_cells = malloc(ilsai_mesh_cells(&s->mesh) * sizeof *survey_cells);
+static ilsa_status measure_inwards(coarse *c, march *inwards) {
+    const ilsa_mesh_def *mesh = &c->m->mesh;
+    grid g = ilsai_grid(mesh, 0, 0);
+    box region = ilsai_fracture_region(mesh, &c->f->footprint);
+    survey_cell *survey_cells = ilsai_allocate(ilsai_mesh_cells(mesh), sizeof *survey_cells);
     if (!survey_cells) {
         return ILSA_ERR_MEMORY;
     }
     int count = 0;
     for (int j = region.y0; j <= region.y1; j++) {
         for (int i = region.x0; i <= region.x1; i++) {
-            int cell = ilsai_grid_cell(&g, i, j), kind = s->field.kind[cell];
-            s->trial.kind[cell] = kind == ILSA_CELL_CHANNEL ? ILSA_CELL_EMPTY : ILSA_CELL_CHANNEL;
+            int cell = ilsai_grid_cell(&g, i, j), kind = c->f->cells.kind[cell];
+            c->known.kind[cell] = kind == ILSA_CELL_CHANNEL ? ILSA_CELL_EMPTY : ILSA_CELL_CHANNEL;
             if (kind == ILSA_CELL_SURVEY) {
-                survey_cell survey = {.cell = cell, .s = s->field.level[cell], .w = 1};
-                survey.V = s->field.speed[cell];
-                survey_cells[count++] = survey;
+                survey_cells[count++] = (survey_cell){.cell = cell,
+                                                      .s = c->f->cells.level[cell],
+                                                      .V = c->f->cells.speed[cell],
+                                                      .w = 1};
             }
         }
     }
-    ilsa_status status = ilsai_march_run(s->march, &g, &region, s->trial.kind, survey_cells, count,
-                                         depth(s), s->source_term);
-    free(survey_cells);
+    ilsa_status status = ilsai_march_run(inwards, &g, &region, c->known.kind, survey_cells, count,
+                                         depth(mesh), c->known.level);
+    ilsai_release(survey_cells);
     return status;
 }
 
-/* When the front has passed the centre of a cell, or will at its present speed. */
-static double passing(const ilsa_solver *s, size_t cell) {
-    double level = s->field.level[cell], V = s->field.speed[cell];
-    return isfinite(s->field.trigger[cell]) ? s->field.trigger[cell]
-           : level > 0 && V > 0             ? s->now.time + level / V
-                                            : INFINITY;
+/* When the front has passed the centre of a cell, or will at its present velocity. */
+static double passing(const coarse *c, size_t cell) {
+    const fields *old = &c->f->cells;
+    double level = old->level[cell], V = old->speed[cell];
+    return isfinite(old->trigger[cell]) ? old->trigger[cell]
+           : level > 0 && V > 0         ? c->f->time + level / V
+                                        : INFINITY;
 }
 
-/* Spread of the trigger time over a cell that is full, or as it will be at its present speed. */
-static double spreading(const ilsa_solver *s, size_t cell) {
-    double V = s->field.speed[cell];
-    return s->field.kind[cell] >= ILSA_CELL_SURVEY ? s->field.spread[cell]
-           : V > 0 ? fmin(0.25 * (s->mesh.dx + s->mesh.dy) / V, s->now.time)
+/* Spread of the trigger time over a cell that is full, or as it will be at its present velocity. */
+static double spreading(const coarse *c, size_t cell) {
+    const fields *old = &c->f->cells;
+    double V = old->speed[cell];
+    return ilsai_is_channel(old->kind[cell]) ? old->spread[cell]
+           : V > 0 ? fmin(0.25 * (c->m->mesh.dx + c->m->mesh.dy) / V, c->f->time)
                    : INFINITY;
 }
 
 /*
- * Levels and speeds with the inward march in place of what the channel's last were, which are of
- * any age; cells that it did not reach lie deep in the channel.
+ * Levels and velocities with the inward march in place of what the channel's last were, which are
+ * of any age; cells that it did not reach lie deep in the channel.
  */
-static void level_all(ilsa_solver *s) {
+static void level_all(coarse *c, const march *inwards) {
     int count;
-    const front_cell *cells = ilsai_march_cells(s->march, &count);
-    size_t all = ilsai_mesh_cells(&s->mesh);
-    memcpy(s->trial.speed, s->field.speed, all * sizeof(double));
+    const front_cell *cells = ilsai_march_cells(inwards, &count);
+    const fields *old = &c->f->cells;
+    size_t all = ilsai_mesh_cells(&c->m->mesh);
     for (size_t k = 0; k < all; k++) {
-        int channel = s->field.kind[k] == ILSA_CELL_CHANNEL;
-        s->trial.level[k] = channel ? -depth(s) : s->field.level[k];
-        s->leak[k] = ilsai_has_leakoff(s) ? passing(s, k) : 0;
-        s->self_correction[k] = ilsai_has_leakoff(s) ? spreading(s, k) : 0;
+        bool channel = old->kind[k] == ILSA_CELL_CHANNEL;
+        c->known.level[k] = channel ? -depth(&c->m->mesh) : old->level[k];
+        c->known.speed[k] = old->speed[k];
+        if (old->trigger) {
+            c->known.trigger[k] = passing(c, k);
+            c->known.spread[k] = spreading(c, k);
+        }
     }
     for (int k = 0; k < count; k++) {
-        s->trial.level[cells[k].cell] = -cells[k].T;
-        s->trial.speed[cells[k].cell] = cells[k].V;
+        c->known.level[cells[k].cell] = -cells[k].T;
+        c->known.speed[cells[k].cell] = cells[k].V;
     }
 }
 
@@ -240,16 +228,16 @@ static int by_time(const void *a, const void *b) {
  * that is now at level T had the front -T further back than it is now. Returns how many.
  */
 static int passed_centres(const coarse *c, const front_cell *f, int i, int j, knot knots[9]) {
-    const ilsa_mesh_def *old = &c->s->mesh;
+    const ilsa_mesh_def *old = &c->m->mesh;
     cover across = covered(old->nx, i), up = covered(old->ny, j);
     int count = 0;
     for (int b = up.first; b < up.first + up.count; b++) {
         for (int a = across.first; a < across.first + across.count; a++) {
             int at = b * old->nx + a;
-            if (!on_mesh(old, a, b) || !(c->s->field.trigger[at] < c->s->now.time)) {
+            if (!on_mesh(old, a, b) || !(c->f->cells.trigger[at] < c->f->time)) {
                 continue;
             }
-            knot k = {c->s->field.trigger[at], f->ell + c->s->trial.level[at]};
+            knot k = {c->f->cells.trigger[at], f->ell + c->known.level[at]};
             if (k.ell > 0 && k.ell < f->ell) {
                 knots[count++] = k;
             }
@@ -262,71 +250,73 @@ static int passed_centres(const coarse *c, const front_cell *f, int i, int j, kn
 /* The velocity history of a new tip cell. */
 static void lay_path(coarse *c, const front_cell *f, int i, int j) {
     knot knots[9];
-    double now = c->s->now.time, ell = f->ell > 0 ? f->ell : 0;
+    double now = c->f->time, ell = f->ell > 0 ? f->ell : 0;
     int count = passed_centres(c, f, i, j, knots);
     knot first = count > 0 ? knots[0] : (knot){now, ell};
     double since = f->V > 0 ? first.ell / f->V : now;
     double entered = first.t - fmax(since, ILSAI_DT_SMALLEST * now);
-    tip_record *record = &c->tips.at[c->tips.count++];
-    record->cell = f->cell;
-    ilsai_tip_cell_enter(&record->history, entered > 0 ? entered : 0);
+    tip_path *path = &c->paths.at[c->paths.count++];
+    path->cell = f->cell;
+    ilsai_tip_cell_enter(&path->history, entered > 0 ? entered : 0);
     for (int k = 0; k < count; k++) {
-        if (knots[k].t > record->history.t[record->history.count - 1]) {
-            ilsai_tip_cell_record(&record->history, knots[k].t, knots[k].ell);
+        if (knots[k].t > path->history.t[path->history.count - 1]) {
+            ilsai_tip_cell_record(&path->history, knots[k].t, knots[k].ell);
         }
     }
-    ilsai_tip_cell_record(&record->history, now, ell);
+    ilsai_tip_cell_record(&path->history, now, ell);
 }
 
-/* Level, velocity and trigger time at the new centres, of the cells the front can be near. */
-static void sample(coarse *c, const box *b) {
-    for (int j = b->y0; j <= b->y1; j++) {
-        for (int i = b->x0; i <= b->x1; i++) {
-            int cell = j * c->mesh.nx + i;
-            c->field.level[cell] = at_centre(c, old_level, i, j);
-            double V = at_centre(c, old_speed, i, j);
-            c->field.speed[cell] = isfinite(V) ? V : 0; /* beyond the old mesh */
-            if (c->field.trigger) {
-                double t = fmin(at_centre(c, old_passing, i, j), c->s->now.time);
-                c->field.trigger[cell] = c->field.level[cell] <= 0 ? t : INFINITY;
-                double spread = 2 * at_centre(c, old_spread, i, j);
-                c->field.spread[cell] =
-                    isfinite(spread) ? fmax(fmin(spread, c->s->now.time - t), 0) : 0;
-            }
+/* Samples the fields that a new cell takes at its centre: level, velocity, trigger time, spread. */
+static void sample(coarse *c, int i, int j) {
+    size_t cell = (size_t)j * (size_t)c->mesh.nx + (size_t)i;
+    const fields *f = &c->field;
+    for (int row = 0; row < FIELD_COUNT; row++) {
+        double *values = ilsai_field(f, row);
+        if (values && ilsai_field_rows[row].coarsened == COARSEN_CENTRE) {
+            values[cell] = at_centre(c, row, i, j);
         }
+    }
+    f->speed[cell] = isfinite(f->speed[cell]) ? f->speed[cell] : 0; /* beyond the old mesh */
+    if (f->trigger) {
+        double now = c->f->time, t = fmin(f->trigger[cell], now), spread = 2 * f->spread[cell];
+        f->trigger[cell] = f->level[cell] <= 0 ? t : INFINITY;
+        f->spread[cell] = isfinite(spread) ? fmax(fmin(spread, now - t), 0) : 0;
     }
 }
 
-/* What the cell holds: volumes are the sums over the old cells, so nothing is lost. */
+/* Gives a new cell what the old cells under it hold: volumes are sums, so nothing is lost. */
 static ilsa_status lay_cell(coarse *c, int i, int j) {
-    sums sum = gather(c, i, j);
-    if (sum.wet <= 0) {
+    double wet = sum_wet(c, NULL, i, j);
+    if (wet <= 0) {
         return ILSA_OK;
     }
-    front_cell f = front_in(c, i, j);
-    int cell = f.cell;
-    int full = f.ell >= c->mesh.dx * f.cos_a + c->mesh.dy * f.sin_a;
-    c->field.kind[cell] = full ? ILSA_CELL_CHANNEL : ILSA_CELL_TIP;
-    c->field.width[cell] = 0.25 * sum.width;
-    c->field.pressure[cell] = sum.pressure / sum.wet;
-    ilsai_box_add(&c->footprint, i, j);
-    if (c->field.leaked) {
-        c->field.leaked[cell] = 0.25 * sum.leaked;
-        if (!full) {
-            if (ilsai_asymptote_records_reserve(&c->tips, c->tips.count + 1) != ILSA_OK) {
-                return ILSA_ERR_MEMORY;
-            }
-            lay_path(c, &f, i, j);
+    front_cell front = front_in(c, i, j);
+    int cell = front.cell;
+    bool full = front.ell >= c->mesh.dx * front.cos_a + c->mesh.dy * front.sin_a;
+    for (int row = 0; row < FIELD_COUNT; row++) {
+        double *values = ilsai_field(&c->field, row);
+        const double *old = ilsai_field(&c->f->cells, row);
+        if (values && ilsai_field_rows[row].coarsened == COARSEN_SUM) {
+            values[cell] = 0.25 * sum_wet(c, old, i, j);
+        } else if (values && ilsai_field_rows[row].coarsened == COARSEN_WET_MEAN) {
+            values[cell] = sum_wet(c, old, i, j) / wet;
         }
-        int passed = full && !isfinite(c->field.trigger[cell]);
-        c->field.trigger[cell] = passed ? c->s->now.time : c->field.trigger[cell];
+    }
+    c->field.kind[cell] = full ? ILSA_CELL_CHANNEL : ILSA_CELL_TIP;
+    ilsai_box_add(&c->footprint, i, j);
+    if (c->field.trigger && !full) {
+        ILSAI_TRY(ilsai_tip_paths_reserve(&c->paths, c->paths.count + 1));
+        lay_path(c, &front, i, j);
+    }
+    if (c->field.trigger && full && !isfinite(c->field.trigger[cell])) {
+        c->field.trigger[cell] = c->f->time;
     }
     return ILSA_OK;
 }
 
 /* The new cells that the old region's cells fall into. */
 static box covering(const coarse *c) {
-    box old = ilsai_solver_region(c->s, &c->s->now.footprint);
+    box old = ilsai_fracture_region(&c->m->mesh, &c->f->footprint);
     int nx = c->mesh.nx, ny = c->mesh.ny;
     box b = {(old.x0 + (nx - 1) / 2) / 2 - 1, (old.x1 + nx / 2) / 2 + 1,
              (old.y0 + (ny - 1) / 2) / 2 - 1, (old.y1 + ny / 2) / 2 + 1};
@@ -337,60 +327,68 @@ static box covering(const coarse *c) {
 static ilsa_status lay(coarse *c) {
     grid flat = ilsai_grid(&c->mesh, 0, 0);
     box b = covering(c);
-    sample(c, &b);
     for (int j = b.y0; j <= b.y1; j++) {
         for (int i = b.x0; i <= b.x1; i++) {
-            ilsa_status status = lay_cell(c, i, j);
-            if (status != ILSA_OK) {
-                return status;
-            }
+            sample(c, i, j);
         }
     }
-    ilsai_step_classify(&flat, &c->footprint, c->field.kind);
+    for (int j = b.y0; j <= b.y1; j++) {
+        for (int i = b.x0; i <= b.x1; i++) {
+            ILSAI_TRY(lay_cell(c, i, j));
+        }
+    }
+    ilsai_fracture_find_survey(&flat, &c->footprint, c->field.kind);
     return ILSA_OK;
 }
 
 static void release(coarse *c) {
+    ilsai_fields_destroy(&c->known);
     ilsai_fields_destroy(&c->field);
-    free(c->tips.at);
+    ilsai_tip_paths_destroy(&c->paths);
     ilsa_stress_destroy(&c->stress);
     ilsai_elasticity_destroy(&c->elastic);
 }
 
 static ilsa_status allocate(coarse *c) {
-    const ilsa_solver *s = c->s;
-    ilsa_status status = ilsai_fields_create(&c->field, &c->mesh, ilsai_has_leakoff(s));
-    status = status ? status : ilsai_stress_copy(s->stress, &c->stress);
-    status = status ? status : ilsai_stress_coarsen(c->stress);
-    return status ? status
-                  : ilsai_elasticity_create(s->material.E_prime, c->mesh.dx, c->mesh.dy,
-                                            s->def.product, &c->elastic);
+    size_t cells = ilsai_mesh_cells(&c->mesh);
+    bool leaks = ilsai_model_leaks(c->m);
+    ILSAI_TRY(ilsai_fields_create(&c->known, cells, FIELD_FRACTURE, leaks));
+    ILSAI_TRY(ilsai_fields_create(&c->field, cells, FIELD_FRACTURE, leaks));
+    ILSAI_TRY(ilsai_stress_copy(c->m->stress, &c->stress));
+    ILSAI_TRY(ilsai_stress_coarsen(c->stress));
+    return ilsai_elasticity_create(c->m->material.E_prime, c->mesh.dx, c->mesh.dy,
+                                   c->m->options.product, &c->elastic);
 }
 
-/* The new state takes the old one's place, which is left in c to be released. */
+static ilsa_status make(coarse *c, march *inwards) {
+    ILSAI_TRY(allocate(c));
+    ILSAI_TRY(measure_inwards(c, inwards));
+    level_all(c, inwards);
+    return lay(c);
+}
+
+/* The new fracture takes the old one's place, which is left in c to be released. */
 static void exchange(ilsa_solver *s, coarse *c) {
-    coarse old = *c;
-    old.field = s->field;
-    old.tips = s->tips;
-    old.stress = s->stress;
-    old.elastic = s->elastic;
-    s->mesh = c->mesh;
-    s->field = c->field;
-    s->tips = c->tips;
-    s->stress = c->stress;
-    s->elastic = c->elastic;
-    s->now.footprint = c->footprint;
-    s->now.dt_limit = INFINITY;
-    ilsai_sources_place(s);
+    fracture *f = &s->fracture;
+    coarse old = {.known = c->known,
+                  .field = f->cells,
+                  .paths = f->paths,
+                  .stress = s->model.stress,
+                  .elastic = s->numerics.elastic};
+    s->model.mesh = c->mesh;
+    s->model.stress = c->stress;
+    s->numerics.elastic = c->elastic;
+    f->cells = c->field;
+    f->paths = c->paths;
+    f->footprint = c->footprint;
+    s->pace.dt_limit = INFINITY;
+    ilsai_sources_place(&s->model.sources, &s->model.mesh);
     *c = old;
 }
 
 static ilsa_status check(ilsa_solver *s) {
-    ilsa_status status = ilsai_check_started(s, &s->error);
-    if (status != ILSA_OK) {
-        return status;
-    }
-    const box *b = &s->now.footprint;
+    ILSAI_TRY(ilsai_fracture_check(&s->fracture, &s->error));
+    const box *b = &s->fracture.footprint;
     int across = b->x1 - b->x0 < b->y1 - b->y0 ? b->x1 - b->x0 + 1 : b->y1 - b->y0 + 1;
     if (across < 2 * ILSAI_COARSEN_LEAST) {
         return ilsai_fail(&s->error, ILSA_ERR_VALUE,
@@ -404,23 +402,16 @@ ilsa_status ilsa_coarsen(ilsa_solver *solver) {
     if (!solver) {
         return ilsai_check_pointer(ilsai_thread_error(), "solver", solver);
     }
-    ilsa_status status = check(solver);
-    if (status != ILSA_OK) {
-        return status;
-    }
-    coarse c = {.s = solver, .mesh = solver->mesh};
-    c.mesh.dx *= 2;
-    c.mesh.dy *= 2;
-    c.footprint = (box){c.mesh.nx, -1, c.mesh.ny, -1};
-    status = allocate(&c);
-    status = status ? status : measure_inwards(solver);
-    if (status == ILSA_OK) {
-        level_all(solver);
-        status = lay(&c);
-    }
+    ILSAI_TRY(check(solver));
+    const ilsa_mesh_def *mesh = &solver->model.mesh;
+    coarse c = {.m = &solver->model,
+                .f = &solver->fracture,
+                .mesh = {mesh->nx, mesh->ny, 2 * mesh->dx, 2 * mesh->dy},
+                .footprint = {mesh->nx, -1, mesh->ny, -1}};
+    ilsa_status status = make(&c, solver->numerics.march);
     if (status == ILSA_OK) {
         exchange(solver, &c);
-        status = ilsai_solver_fill_stress(solver);
+        status = ilsai_model_fill_stress(&solver->model);
     }
     release(&c);
     return status == ILSA_OK ? ILSA_OK

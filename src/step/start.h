@@ -2,7 +2,7 @@
 #ifndef ILSAI_START_H
 #define ILSAI_START_H
 
-#include "step/state.h"
+#include "step/solver.h"
 #include "tip/penny.h"
 
 /* Whether it can be laid, and room for it. ILSA_ERR_VALUE, ILSA_MESH_EDGE, ILSA_ERR_MEMORY. */

@@ -1,16 +1,14 @@
-/* One time step: predict the front, iterate, accept. */
+/* One step of the solver. */
 #ifndef ILSAI_STEP_H
 #define ILSAI_STEP_H
 
-#include "step/state.h"
+#include "step/solver.h"
 
 /*
- * Takes a step of dt > 0 on a started solver whose step data are allocated; report's counts are
- * added to. Any status but ILSA_OK leaves s->now, s->field and s->tips as they were.
+ * Takes the fracture from its time to time_after, dt later. ILSA_OK; any other status leaves the
+ * fracture as it was: ILSA_STEP_REJECTED, ILSA_STEP_TOO_LARGE, ILSA_MESH_EDGE, ILSA_CLOSED,
+ * ILSA_ERR_STATE, ILSA_ERR_MEMORY. The work is in s->trial.work in either case.
  */
-ilsa_status ilsai_step(ilsa_solver *s, double dt, ilsa_report *report);
-
-/* Makes survey cells of the channel cells of a box at the rim, channel cells of the others. */
-void ilsai_step_classify(const grid *g, const box *part, unsigned char *kind);
+ilsa_status ilsai_step(ilsa_solver *s, double dt, double time_after);
 
 #endif

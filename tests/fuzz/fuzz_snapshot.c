@@ -5,6 +5,8 @@
  */
 #include "fuzz.h"
 
+#include <stdlib.h>
+
 /* For the header and the checksum, which are its own; the library's copy is then not linked. */
 /* NOLINTNEXTLINE(bugprone-suspicious-include) */
 #include "api/snapshot.c"
@@ -21,7 +23,7 @@ static ilsa_solver *make_solver(int layers) {
     const ilsa_mesh_def mesh_def = {SIZE, SIZE, 1, 1};
     const ilsa_material_def material_def = {1, 1, 1, layers ? 0.3 : 0};
     const ilsa_stress_def stress_def = {0};
-    const ilsa_source_def sources[] = {{0, 0, 1}, {1, 0, 0.5}};
+    const ilsa_source_def wells[] = {{0, 0, 1}, {1, 0, 0.5}};
     const double y[] = {-1.5, 1.5}, sigma[] = {0.2, 0, 0.1};
     ilsa_mesh *mesh;
     ilsa_material *material;
@@ -35,7 +37,7 @@ static ilsa_solver *make_solver(int layers) {
     def.mesh = mesh;
     def.material = material;
     def.stress = stress;
-    def.sources = sources;
+    def.sources = wells;
     def.source_count = layers ? 2 : 1;
     FUZZ_EXPECT(!ilsa_solver_create(&def, &solver) && !ilsa_start_radial(solver, 2.5));
     FUZZ_EXPECT(!ilsa_advance_one(solver, 1e300, NULL));

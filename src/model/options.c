@@ -1,0 +1,45 @@
+#include "model/options.h"
+
+#include <math.h>
+
+typedef enum option_kind { WHOLE, CHOICE, NUMBER } option_kind;
+
+typedef struct option_row {
+    const char *name;
+    option_kind kind;
+    double least, most;
+    bool kept;
+} option_row;
+
+static const option_row rows[OPTION_COUNT] = {
+#define ILSA_OPTION(member, kind, least, most, kept, key, words) {#member, kind, least, most, kept},
+#include <ilsa/options.def>
+#undef ILSA_OPTION
+};
+
+double ilsai_option(const ilsa_solver_def *def, int option) {
+    const double values[OPTION_COUNT] = {
+#define ILSA_OPTION(member, kind, least, most, kept, key, words) (double)def->member,
+#include <ilsa/options.def>
+#undef ILSA_OPTION
+    };
+    return values[option];
+}
+
+bool ilsai_option_is_kept(int option) {
+    return rows[option].kept;
+}
+
+const char *ilsai_option_name(int option) {
+    return rows[option].name;
+}
+
+ilsa_status ilsai_options_check(const ilsa_solver_def *def, error_text *error) {
+    for (int k = 0; k < OPTION_COUNT; k++) {
+        double value = ilsai_option(def, k);
+        if (value != 0) {
+            ILSAI_TRY(ilsai_check_range(error, rows[k].name, value, rows[k].least, rows[k].most));
+        }
+    }
+    return ILSA_OK;
+}
