@@ -9,7 +9,7 @@
 /* What the coupled solve finds in an unknowns cell; the width of the others is given. */
 enum {
     UNKNOWN_WIDTH,    /* an open channel cell; its pressure follows from the widths */
-    UNKNOWN_LEAK,     /* a cell that drains, see contact.h: less than the full leak-off */
+    UNKNOWN_RETAINED, /* a draining cell: the part of its full leak-off that stays in it */
     UNKNOWN_PRESSURE, /* a tip cell */
     UNKNOWN_CONTACT   /* a closed cell, see contact.h: the pressure */
 };

@@ -25,7 +25,7 @@ static void set_retained(const contact *c, int k, double value) {
 }
 
 static void set_state(const contact *c, int k, unsigned char state) {
-    static const unsigned char unknown[] = {UNKNOWN_WIDTH, UNKNOWN_LEAK, UNKNOWN_CONTACT,
+    static const unsigned char unknown[] = {UNKNOWN_WIDTH, UNKNOWN_RETAINED, UNKNOWN_CONTACT,
                                             UNKNOWN_WIDTH};
     int cell = c->cells->cell[k];
     c->field.state[cell] = state;
@@ -70,7 +70,7 @@ bool ilsai_contact_bound(const contact *c, int k) {
             close_cell(c, k, missing);
             return true;
         }
-    } else if (c->cells->unknown[k] == UNKNOWN_LEAK && !c->late) {
+    } else if (c->cells->unknown[k] == UNKNOWN_RETAINED && !c->late) {
         double limit = retained_limit(c, k), retained = c->field.retained[cell];
         if (retained < 0 || retained > limit) {
             set_retained(c, k, retained < 0 ? 0 : limit);
@@ -92,7 +92,7 @@ void ilsai_contact_reopen(const contact *c, int k) {
 }
 
 double ilsai_contact_violation(const contact *c, int k) {
-    if (c->cells->unknown[k] != UNKNOWN_LEAK) {
+    if (c->cells->unknown[k] != UNKNOWN_RETAINED) {
         return 0;
     }
     double retained = c->field.retained[c->cells->cell[k]];

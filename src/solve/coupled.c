@@ -10,7 +10,7 @@
 
 struct coupled {
     unknowns cells;
-    lubrication fluid;
+    lubrication lubrication;
     jacobian matrix;
     gmres *krylov;
     double *rhs, *step;
@@ -43,7 +43,7 @@ coupled *ilsai_coupled_create(const ilsa_mesh_def *mesh) {
 void ilsai_coupled_destroy(coupled **c) {
     if (*c) {
         ilsai_unknowns_destroy(&(*c)->cells);
-        ilsai_lubrication_destroy(&(*c)->fluid);
+        ilsai_lubrication_destroy(&(*c)->lubrication);
         ilsai_jacobian_destroy(&(*c)->matrix);
         ilsai_gmres_destroy(&(*c)->krylov);
         ilsai_release((*c)->rhs);
@@ -70,7 +70,7 @@ static ilsa_status reserve(coupled *c, int count) {
                                   ILSAI_GROWN(c->closing_pressure),
                                   ILSAI_GROWN(c->matrix.self_correction),
                                   ILSAI_GROWN(c->matrix.sensitivity_of)};
-    ILSAI_TRY(ilsai_lubrication_reserve(&c->fluid, count));
+    ILSAI_TRY(ilsai_lubrication_reserve(&c->lubrication, count));
     ILSAI_TRY(ilsai_gmres_reserve(c->krylov, (size_t)count));
     return ilsai_grow((size_t)count, &c->capacity, arrays, sizeof arrays / sizeof *arrays);
 }
@@ -118,8 +118,8 @@ void ilsai_coupled_pressure(coupled *c, const coupled_problem *problem, coupled_
     box part = ilsai_box_fold(problem->g, &c->cells.footprint);
     double start = ilsai_clock();
     size_t corner = (size_t)ilsai_grid_cell(problem->g, part.x0, part.y0);
-    ilsai_elasticity_multiply(problem->e, problem->width + corner, c->matrix.pressure + corner,
-                              (size_t)problem->g->nx);
+    ilsai_elasticity_multiply(problem->elastic, problem->width + corner,
+                              c->matrix.pressure + corner, (size_t)problem->g->nx);
     counts->seconds_product += ilsai_clock() - start;
     counts->products++;
     share_cells(add_pressures, c, problem);
@@ -130,10 +130,10 @@ static void balance_volumes(void *context, int first, int end) {
     const coupled_problem *problem = ((const loop *)context)->problem;
     for (int k = first; k < end; k++) {
         int cell = c->cells.cell[k];
-        double gain = ilsai_lubrication_inflow(&c->fluid, &c->cells, problem->pressure, k);
+        double inflow = ilsai_lubrication_inflow(&c->lubrication, k);
         double source = problem->source_term[cell] + c->source_change[k];
         source += problem->contact.retained ? problem->contact.retained[cell] : 0;
-        c->rhs[k] = gain + (source - (problem->width[cell] - problem->width_old[cell]));
+        c->rhs[k] = inflow + (source - (problem->width[cell] - problem->width_old[cell]));
         if (c->cells.unknown[k] == UNKNOWN_CONTACT) {
             c->rhs[k] -= ilsai_jacobian_without_width(&c->matrix, k) *
                          (problem->pressure[cell] - c->closing_pressure[k]);
@@ -143,8 +143,15 @@ static void balance_volumes(void *context, int first, int end) {
 
 /* rhs = -(w - w_old - dt A(w) p - S), (4.4). */
 static void set_rhs(coupled *c, const coupled_problem *problem) {
-    ilsai_lubrication_set(&c->fluid, &c->cells, problem->g, problem->width, problem->width_old,
-                          problem->pressure, problem->dt / problem->mu_prime);
+    flow_state state = {.g = problem->g,
+                        .cells = &c->cells,
+                        .material = problem->material,
+                        .dt = problem->dt,
+                        .width = problem->width,
+                        .width_old = problem->width_old,
+                        .pressure = problem->pressure,
+                        .threads = problem->threads};
+    problem->fluid->set_fluxes(&c->lubrication, &state);
     share_cells(balance_volumes, c, problem);
 }
 
@@ -184,7 +191,7 @@ static void move_cell(const coupled *c, const coupled_problem *problem, int k, d
         *width += delta;
         c->front_pressure[k] += length * ilsai_jacobian_front_pressure(&c->matrix, k, c->step);
         break;
-    case UNKNOWN_LEAK:
+    case UNKNOWN_RETAINED:
         problem->contact.retained[cell] += delta;
         break;
     default:
@@ -249,10 +256,10 @@ static progress take_step(coupled *c, const coupled_problem *problem, double len
 static void hold_slopes(const coupled *c, int k) {
     for (int face = 0; face < GRID_FACES; face++) {
         int at = GRID_FACES * k + face, other = c->cells.neighbour[at];
-        c->fluid.slope[at] = 0;
+        c->lubrication.by_width[at] = 0;
         for (int back = 0; other >= 0 && back < GRID_FACES; back++) {
             int from = GRID_FACES * other + back;
-            c->fluid.slope[from] *= c->cells.neighbour[from] != k;
+            c->lubrication.by_width[from] *= c->cells.neighbour[from] != k;
         }
     }
 }
@@ -276,7 +283,7 @@ static int reopen(coupled *c, const coupled_problem *problem, int late) {
             ilsai_contact_reopen(&faces, k);
             opened++;
         }
-        c->closed += *unknown == UNKNOWN_LEAK || *unknown == UNKNOWN_CONTACT;
+        c->closed += *unknown == UNKNOWN_RETAINED || *unknown == UNKNOWN_CONTACT;
     }
     return opened;
 }
@@ -351,7 +358,7 @@ static void find_sensitivities(coupled *c, const coupled_problem *problem) {
 static ilsa_status set_box(const coupled_problem *problem) {
     const grid *g = problem->g;
     box part = ilsai_box_fold(g, &problem->footprint);
-    return ilsai_elasticity_set_box(problem->e, &part, ilsai_grid_about_x(g),
+    return ilsai_elasticity_set_box(problem->elastic, &part, ilsai_grid_about_x(g),
                                     ilsai_grid_about_y(g));
 }
 
@@ -361,17 +368,17 @@ ilsa_status ilsai_coupled_solve(coupled *c, const coupled_problem *problem,
     ILSAI_TRY(reserve(c, c->cells.count));
     ILSAI_TRY(set_box(problem));
     c->matrix.g = problem->g;
-    c->matrix.a = &c->cells;
-    c->matrix.f = &c->fluid;
-    c->matrix.e = problem->e;
+    c->matrix.cells = &c->cells;
+    c->matrix.lubrication = &c->lubrication;
+    c->matrix.elastic = problem->elastic;
     c->matrix.sensitivity = problem->sensitivity_count > 0 ? problem->sensitivity : NULL;
     find_sensitivities(c, problem);
     if (problem->contact.state) {
         contact faces = contact_of(c, problem, 0);
         ilsai_contact_begin(&faces);
     }
-    c->matrix.threads = c->fluid.threads = problem->threads;
-    problem->e->threads = problem->threads;
+    c->matrix.threads = problem->threads;
+    problem->elastic->threads = problem->threads;
     c->matrix.products = 0;
     c->matrix.seconds_product = c->matrix.seconds_preconditioner = 0;
     ilsa_status status = newton(c, problem, counts);

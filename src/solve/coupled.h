@@ -19,19 +19,21 @@ void ilsai_coupled_destroy(coupled **c);
 /* All arrays are over the mesh; only representative cells are read and written. */
 typedef struct coupled_problem {
     const grid *g;
-    elasticity *e;
-    box footprint;                  /* the numbered cells and their images */
-    const unsigned char *kind;      /* ILSA_CELL_EMPTY cells take no part */
-    const double *sigma;            /* far-field stress */
-    const double *width_old;        /* at the start of the step */
-    const double *source_term;      /* S of (4.4): injected less leaked in the step, per area */
+    elasticity *elastic;
+    const fluid *fluid;
+    const ilsa_material_def *material; /* that the fluid has its parameters from */
+    box footprint;                     /* the numbered cells and their images */
+    const unsigned char *kind;         /* ILSA_CELL_EMPTY cells take no part */
+    const double *sigma;               /* far-field stress */
+    const double *width_old;           /* at the start of the step */
+    const double *source_term;         /* S of (4.4): injected less leaked in the step, per area */
     const double *self_correction;  /* what the self term lacks in channel cells; NULL: nothing */
     const sensitivity *sensitivity; /* of cells at the front to the widths, NULL: none */
     int sensitivity_count;
     contact_fields contact; /* where cells may close */
     double *width;          /* in: first guess, and the tip widths; out: solution */
     double *pressure;       /* in: first guess in tip cells; out: solution */
-    double dt, mu_prime;
+    double dt;
     ilsa_linear_solver linear;
     double tolerance;     /* of the error in width, relative to the largest */
     thread_pool *threads; /* that share the loops, NULL: none */

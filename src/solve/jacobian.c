@@ -31,14 +31,14 @@ void ilsai_jacobian_destroy(jacobian *m) {
     ilsai_release(m->self_correction);
     ilsai_release(m->place);
     ilsai_release(m->weight);
-    ilsai_multigrid_destroy(&m->pressures);
-    ilsai_near_field_destroy(&m->widths);
+    ilsai_multigrid_destroy(&m->multigrid);
+    ilsai_near_field_destroy(&m->near_field);
     memset(m, 0, sizeof *m);
 }
 
 /* Closed cells answer to nothing. */
 static const sensitivity *sensitivity_of(const jacobian *m, int k) {
-    int answers = m->a->unknown[k] == UNKNOWN_WIDTH || m->a->unknown[k] == UNKNOWN_PRESSURE;
+    int answers = m->cells->unknown[k] == UNKNOWN_WIDTH || m->cells->unknown[k] == UNKNOWN_PRESSURE;
     return m->sensitivity && answers && m->sensitivity_of[k] >= 0
                ? &m->sensitivity[m->sensitivity_of[k]]
                : NULL;
@@ -46,17 +46,18 @@ static const sensitivity *sensitivity_of(const jacobian *m, int k) {
 
 /* Whether the width of numbered cell k is an unknown. */
 static int is_free(const jacobian *m, int k) {
-    return m->a->unknown[k] == UNKNOWN_WIDTH;
+    return m->cells->unknown[k] == UNKNOWN_WIDTH;
 }
 
 /* Whether its pressure is, that of a tip cell or a closed one. */
 static int has_pressure(const jacobian *m, int k) {
-    return m->a->unknown[k] >= UNKNOWN_PRESSURE;
+    return m->cells->unknown[k] >= UNKNOWN_PRESSURE;
 }
 
 /* The entry of C between a cell and itself, that of the first numbered cell for all. */
 static double self_entry(const jacobian *m) {
-    return ilsai_elasticity_self_entry(m->e, m->a->cell[0] % m->g->nx, m->a->cell[0] / m->g->nx);
+    return ilsai_elasticity_self_entry(m->elastic, m->cells->cell[0] % m->g->nx,
+                                       m->cells->cell[0] / m->g->nx);
 }
 
 /* What a pressure takes of a cell where elasticity is a spring: see JACOBIAN_SPRING. */
@@ -65,8 +66,8 @@ static double spring_of(const jacobian *m) {
 }
 
 double ilsai_jacobian_without_width(const jacobian *m, int k) {
-    int unknown = m->a->unknown[k];
-    return unknown == UNKNOWN_LEAK      ? -1
+    int unknown = m->cells->unknown[k];
+    return unknown == UNKNOWN_RETAINED  ? -1
            : unknown == UNKNOWN_CONTACT ? JACOBIAN_SOFT * spring_of(m)
                                         : 0;
 }
@@ -76,7 +77,7 @@ static double respond(const jacobian *m, const sensitivity *r, const double *wei
                       const double *x) {
     double sum = 0;
     for (int p = 0; r && p < r->count; p++) {
-        int number = m->a->number[r->from[p]];
+        int number = m->cells->number[r->from[p]];
         sum += is_free(m, number) ? weight[p] * x[number] : 0;
     }
     return sum;
@@ -106,14 +107,15 @@ typedef struct loop {
 
 static void share_cells(pool_function *function, jacobian *m, const double *x, double *y) {
     loop l = {m, x, y};
-    ilsai_thread_pool_run(m->threads, function, &l, m->a->count, ILSAI_SHARE_CELLS);
+    ilsai_thread_pool_run(m->threads, function, &l, m->cells->count, ILSAI_SHARE_CELLS);
 }
 
 static void set_widths(void *context, int first, int end) {
     const loop *l = context;
     const jacobian *m = l->m;
     for (int k = first; k < end; k++) {
-        m->width[m->a->cell[k]] = is_free(m, k) ? l->x[k] : ilsai_jacobian_tip_width(m, k, l->x);
+        m->width[m->cells->cell[k]] =
+            is_free(m, k) ? l->x[k] : ilsai_jacobian_tip_width(m, k, l->x);
     }
 }
 
@@ -121,7 +123,7 @@ static void complete_pressures(void *context, int first, int end) {
     const loop *l = context;
     const jacobian *m = l->m;
     for (int k = first; k < end; k++) {
-        double *pressure = &m->pressure[m->a->cell[k]];
+        double *pressure = &m->pressure[m->cells->cell[k]];
         if (is_free(m, k)) {
             *pressure +=
                 m->self_correction[k] * l->x[k] + ilsai_jacobian_front_pressure(m, k, l->x);
@@ -135,9 +137,10 @@ static void complete_pressures(void *context, int first, int end) {
 static void apply_elasticity(jacobian *m, const double *x) {
     share_cells(set_widths, m, x, NULL);
     double start = ilsai_clock();
-    box part = ilsai_box_fold(m->g, &m->a->footprint);
+    box part = ilsai_box_fold(m->g, &m->cells->footprint);
     size_t corner = (size_t)ilsai_grid_cell(m->g, part.x0, part.y0);
-    ilsai_elasticity_multiply(m->e, m->width + corner, m->pressure + corner, (size_t)m->g->nx);
+    ilsai_elasticity_multiply(m->elastic, m->width + corner, m->pressure + corner,
+                              (size_t)m->g->nx);
     m->seconds_product += ilsai_clock() - start;
     m->products++;
     share_cells(complete_pressures, m, x, NULL);
@@ -146,21 +149,22 @@ static void apply_elasticity(jacobian *m, const double *x) {
 static void clear_widths(void *context, int first, int end) {
     const loop *l = context;
     for (int k = first; k < end; k++) {
-        l->m->width[l->m->a->cell[k]] = 0;
+        l->m->width[l->m->cells->cell[k]] = 0;
     }
 }
 
 static void balance_volumes(void *context, int first, int end) {
     const loop *l = context;
     const jacobian *m = l->m;
-    const unknowns *a = m->a;
+    const unknowns *cells = m->cells;
     for (int k = first; k < end; k++) {
-        double w = m->width[a->cell[k]], from_width = 0;
-        double from_pressure = ilsai_lubrication_inflow(m->f, a, m->pressure, k);
+        double w = m->width[cells->cell[k]], from_width = 0;
+        double from_pressure =
+            ilsai_lubrication_inflow_change(m->lubrication, cells, m->pressure, k);
         for (int face = 0; face < GRID_FACES; face++) {
-            int at = GRID_FACES * k + face, other = a->neighbour[at];
+            int at = GRID_FACES * k + face, other = cells->neighbour[at];
             if (other >= 0) {
-                from_width += m->f->slope[at] * (w + m->width[a->cell[other]]);
+                from_width += m->lubrication->by_width[at] * (w + m->width[cells->cell[other]]);
             }
         }
         double own = is_free(m, k) ? w : w + ilsai_jacobian_without_width(m, k) * l->x[k];
@@ -180,7 +184,7 @@ static double corrected_self(const jacobian *m, int k) {
     const sensitivity *r = sensitivity_of(m, k);
     double sum = m->self_correction[k];
     for (int p = 0; r && p < r->count; p++) {
-        sum += r->from[p] == m->a->cell[k] ? r->pressure[p] : 0;
+        sum += r->from[p] == m->cells->cell[k] ? r->pressure[p] : 0;
     }
     return sum;
 }
@@ -196,10 +200,10 @@ static double half_on_axis(int mirror, int count, int at, int first) {
 static void place_cells(void *context, int first, int end) {
     jacobian *m = ((const loop *)context)->m;
     const grid *g = m->g;
-    box part = ilsai_box_fold(g, &m->a->footprint);
+    box part = ilsai_box_fold(g, &m->cells->footprint);
     size_t stride = ilsai_box_columns(&part) + 2;
     for (int k = first; k < end; k++) {
-        int i = m->a->cell[k] % g->nx, j = m->a->cell[k] / g->nx;
+        int i = m->cells->cell[k] % g->nx, j = m->cells->cell[k] / g->nx;
         m->place[k] = (size_t)(j - part.y0 + 1) * stride + (size_t)(i - part.x0 + 1);
         m->weight[k] = half_on_axis(g->mirror_x, g->nx, i, g->lo_x) *
                        half_on_axis(g->mirror_y, g->ny, j, g->lo_y);
@@ -208,13 +212,13 @@ static void place_cells(void *context, int first, int end) {
 
 /* The pressure of a cell that drains is as its neighbours' widths have it: no flow changes it. */
 static double pinned(const jacobian *m, int k, double spring) {
-    if (m->a->unknown[k] != UNKNOWN_LEAK) {
+    if (m->cells->unknown[k] != UNKNOWN_RETAINED) {
         return ilsai_jacobian_without_width(m, k);
     }
-    const double *conductance = m->f->conductance + (size_t)GRID_FACES * (size_t)k;
+    const double *by_pressure = m->lubrication->by_pressure + (size_t)GRID_FACES * (size_t)k;
     double pull = spring;
     for (int face = 0; face < GRID_FACES; face++) {
-        pull += conductance[face];
+        pull += by_pressure[face];
     }
     return JACOBIAN_STIFF * pull;
 }
@@ -222,14 +226,14 @@ static double pinned(const jacobian *m, int k, double spring) {
 static void set_flow(void *context, int first, int end) {
     jacobian *m = ((const loop *)context)->m;
     const grid *g = m->g;
-    multigrid_level *l = &m->pressures.level[0];
+    multigrid_level *l = &m->multigrid.level[0];
     double spring = spring_of(m);
     for (int k = first; k < end; k++) {
-        const double *conductance = m->f->conductance + (size_t)GRID_FACES * (size_t)k;
-        int i = m->a->cell[k] % g->nx, j = m->a->cell[k] / g->nx;
+        const double *by_pressure = m->lubrication->by_pressure + (size_t)GRID_FACES * (size_t)k;
+        int i = m->cells->cell[k] % g->nx, j = m->cells->cell[k] / g->nx;
         size_t at = m->place[k];
-        l->right[at] = half_on_axis(g->mirror_y, g->ny, j, g->lo_y) * conductance[GRID_RIGHT];
-        l->up[at] = half_on_axis(g->mirror_x, g->nx, i, g->lo_x) * conductance[GRID_UP];
+        l->right[at] = half_on_axis(g->mirror_y, g->ny, j, g->lo_y) * by_pressure[GRID_RIGHT];
+        l->up[at] = half_on_axis(g->mirror_x, g->nx, i, g->lo_x) * by_pressure[GRID_UP];
         l->spring[at] = m->weight[k] * (is_free(m, k) ? spring : pinned(m, k, spring));
     }
 }
@@ -237,37 +241,37 @@ static void set_flow(void *context, int first, int end) {
 static void set_open_cells(void *context, int first, int end) {
     jacobian *m = ((const loop *)context)->m;
     for (int k = first; k < end; k++) {
-        m->widths.open[m->place[k]] = is_free(m, k);
-        m->widths.extra[m->place[k]] = is_free(m, k) ? corrected_self(m, k) : 0;
+        m->near_field.open[m->place[k]] = is_free(m, k);
+        m->near_field.extra[m->place[k]] = is_free(m, k) ? corrected_self(m, k) : 0;
     }
 }
 
 /* One stencil serves all cells, that of the first numbered one: a preconditioner may be inexact. */
 static void set_near_field(jacobian *m) {
-    near_field *n = &m->widths;
-    int i = m->a->cell[0] % m->g->nx, j = m->a->cell[0] / m->g->nx;
+    near_field *n = &m->near_field;
+    int i = m->cells->cell[0] % m->g->nx, j = m->cells->cell[0] / m->g->nx;
     n->about_x = ilsai_grid_about_x(m->g);
     n->about_y = ilsai_grid_about_y(m->g);
     n->self = self_entry(m);
-    n->beside = ilsai_elasticity_entry(m->e, i, j, i + 1, j);
-    n->above = ilsai_elasticity_entry(m->e, i, j, i, j + 1);
-    n->corner = ilsai_elasticity_entry(m->e, i, j, i + 1, j + 1);
+    n->beside = ilsai_elasticity_entry(m->elastic, i, j, i + 1, j);
+    n->above = ilsai_elasticity_entry(m->elastic, i, j, i, j + 1);
+    n->corner = ilsai_elasticity_entry(m->elastic, i, j, i + 1, j + 1);
     share_cells(set_open_cells, m, NULL, NULL);
 }
 
 ilsa_status ilsai_jacobian_set_preconditioner(jacobian *m) {
     double start = ilsai_clock();
-    box part = ilsai_box_fold(m->g, &m->a->footprint);
+    box part = ilsai_box_fold(m->g, &m->cells->footprint);
     int nx = (int)ilsai_box_columns(&part), ny = (int)ilsai_box_rows(&part);
-    m->pressures.threads = m->widths.threads = m->threads;
+    m->multigrid.threads = m->near_field.threads = m->threads;
     const grown_array arrays[] = {ILSAI_GROWN(m->place), ILSAI_GROWN(m->weight)};
-    ILSAI_TRY(ilsai_grow((size_t)m->a->count, &m->place_capacity, arrays,
+    ILSAI_TRY(ilsai_grow((size_t)m->cells->count, &m->place_capacity, arrays,
                          sizeof arrays / sizeof *arrays));
-    ILSAI_TRY(ilsai_multigrid_shape(&m->pressures, nx, ny));
-    ILSAI_TRY(ilsai_near_field_shape(&m->widths, nx, ny));
+    ILSAI_TRY(ilsai_multigrid_shape(&m->multigrid, nx, ny));
+    ILSAI_TRY(ilsai_near_field_shape(&m->near_field, nx, ny));
     share_cells(place_cells, m, NULL, NULL);
     share_cells(set_flow, m, NULL, NULL);
-    ilsai_multigrid_build(&m->pressures);
+    ilsai_multigrid_build(&m->multigrid);
     set_near_field(m);
     m->seconds_preconditioner += ilsai_clock() - start;
     return ILSA_OK;
@@ -276,7 +280,7 @@ ilsa_status ilsai_jacobian_set_preconditioner(jacobian *m) {
 static void lay_out(void *context, int first, int end) {
     const loop *l = context;
     for (int k = first; k < end; k++) {
-        l->m->pressures.level[0].b[l->m->place[k]] = l->m->weight[k] * l->x[k];
+        l->m->multigrid.level[0].b[l->m->place[k]] = l->m->weight[k] * l->x[k];
     }
 }
 
@@ -284,7 +288,7 @@ static void hand_over(void *context, int first, int end) {
     jacobian *m = ((const loop *)context)->m;
     for (int k = first; k < end; k++) {
         size_t at = m->place[k];
-        m->widths.y[at] = is_free(m, k) ? m->pressures.level[0].y[at] : 0;
+        m->near_field.y[at] = is_free(m, k) ? m->multigrid.level[0].y[at] : 0;
     }
 }
 
@@ -293,11 +297,11 @@ static void read_out(void *context, int first, int end) {
     const jacobian *m = l->m;
     for (int k = first; k < end; k++) {
         size_t at = m->place[k];
-        double pressure = m->pressures.level[0].y[at];
-        l->y[k] = is_free(m, k) ? m->widths.x[at]
+        double pressure = m->multigrid.level[0].y[at];
+        l->y[k] = is_free(m, k) ? m->near_field.x[at]
                   : has_pressure(m, k)
                       ? pressure
-                      : -m->pressures.level[0].spring[at] / m->weight[k] * pressure;
+                      : -m->multigrid.level[0].spring[at] / m->weight[k] * pressure;
     }
 }
 
@@ -310,9 +314,9 @@ void ilsai_jacobian_precondition(void *context, const double *x, double *y) {
     jacobian *m = context;
     double start = ilsai_clock();
     share_cells(lay_out, m, x, NULL);
-    ilsai_multigrid_cycle(&m->pressures);
+    ilsai_multigrid_cycle(&m->multigrid);
     share_cells(hand_over, m, NULL, NULL);
-    ilsai_near_field_solve(&m->widths);
+    ilsai_near_field_solve(&m->near_field);
     share_cells(read_out, m, NULL, y);
     m->seconds_preconditioner += ilsai_clock() - start;
 }
@@ -321,11 +325,12 @@ void ilsai_jacobian_precondition(void *context, const double *x, double *y) {
 
 /* C between cells a and b, b's images included. */
 static double folded_entry(const jacobian *m, int a, int b) {
-    int image[4], nx = m->g->nx, cell = m->a->cell[b], here = m->a->cell[a];
+    int image[4], nx = m->g->nx, cell = m->cells->cell[b], here = m->cells->cell[a];
     int count = ilsai_grid_images(m->g, cell % nx, cell / nx, image);
     double sum = 0;
     for (int c = 0; c < count; c++) {
-        sum += ilsai_elasticity_entry(m->e, here % nx, here / nx, image[c] % nx, image[c] / nx);
+        sum +=
+            ilsai_elasticity_entry(m->elastic, here % nx, here / nx, image[c] % nx, image[c] / nx);
     }
     return sum;
 }
@@ -334,7 +339,7 @@ static double folded_entry(const jacobian *m, int a, int b) {
 static void add_sensitivity(const jacobian *m, double *out, const sensitivity *r,
                             const double *weight, double value) {
     for (int p = 0; r && p < r->count; p++) {
-        int number = m->a->number[r->from[p]];
+        int number = m->cells->number[r->from[p]];
         out[number] += is_free(m, number) ? value * weight[p] : 0;
     }
 }
@@ -360,13 +365,13 @@ static double pressure_unit(const jacobian *m) {
 /* What the pressure of numbered cell row is in terms of the unknowns: C with the tips'
  * sensitivities. */
 static void fill_influence_row(jacobian *m, int row, double *out) {
-    const unknowns *a = m->a;
-    memset(out, 0, (size_t)a->count * sizeof *out);
+    const unknowns *cells = m->cells;
+    memset(out, 0, (size_t)cells->count * sizeof *out);
     if (has_pressure(m, row)) {
         out[row] = pressure_unit(m);
         return;
     }
-    for (int k = 0; k < a->count; k++) {
+    for (int k = 0; k < cells->count; k++) {
         add_width(m, out, k, folded_entry(m, row, k));
     }
     if (is_free(m, row)) {
@@ -378,7 +383,7 @@ static void fill_influence_row(jacobian *m, int row, double *out) {
 
 ilsa_status ilsai_jacobian_set_influence(jacobian *m) {
     double start = ilsai_clock();
-    size_t n = (size_t)m->a->count;
+    size_t n = (size_t)m->cells->count;
     const grown_array squares[] = {ILSAI_GROWN(m->full), ILSAI_GROWN(m->influence)};
     const grown_array pivots = ILSAI_GROWN(m->pivots);
     ILSAI_TRY(ilsai_grow(n * n, &m->full_capacity, squares, sizeof squares / sizeof *squares));
@@ -392,19 +397,20 @@ ilsa_status ilsai_jacobian_set_influence(jacobian *m) {
 
 /* Row k of the full matrix, stored as a column of the transpose. */
 static void fill_full_row(jacobian *m, int row) {
-    const unknowns *a = m->a;
-    size_t n = (size_t)a->count;
+    const unknowns *cells = m->cells;
+    size_t n = (size_t)cells->count;
     double *out = m->full + (size_t)row * n, total = 0, diagonal = 1;
     memset(out, 0, n * sizeof *out);
     for (int face = 0; face < GRID_FACES; face++) {
-        int at = GRID_FACES * row + face, other = a->neighbour[at];
+        int at = GRID_FACES * row + face, other = cells->neighbour[at];
         if (other < 0) {
             continue;
         }
-        cblas_daxpy((int)n, -m->f->conductance[at], m->influence + (size_t)other * n, 1, out, 1);
-        add_width(m, out, other, -m->f->slope[at]);
-        diagonal -= m->f->slope[at];
-        total += m->f->conductance[at];
+        cblas_daxpy((int)n, -m->lubrication->by_pressure[at], m->influence + (size_t)other * n, 1,
+                    out, 1);
+        add_width(m, out, other, -m->lubrication->by_width[at]);
+        diagonal -= m->lubrication->by_width[at];
+        total += m->lubrication->by_pressure[at];
     }
     cblas_daxpy((int)n, total, m->influence + (size_t)row * n, 1, out, 1);
     add_width(m, out, row, diagonal);
@@ -418,7 +424,7 @@ static void fill_full_row(jacobian *m, int row) {
 
 ilsa_status ilsai_jacobian_solve_full(jacobian *m, const double *b, double *x) {
     double start = ilsai_clock();
-    int n = m->a->count;
+    int n = m->cells->count;
     for (int row = 0; row < n; row++) {
         fill_full_row(m, row);
     }

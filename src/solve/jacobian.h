@@ -7,30 +7,18 @@
 #ifndef ILSAI_JACOBIAN_H
 #define ILSAI_JACOBIAN_H
 
+#include "base/sensitivity.h"
 #include "base/unknowns.h"
 #include "elastic/elasticity.h"
 #include "flow/lubrication.h"
 #include "solve/multigrid.h"
 #include "solve/near_field.h"
 
-/*
- * How the width and the source term of a cell at the front, or the pressure that its own width
- * brings about there, change with the widths of the survey cells that the front is found from.
- */
-enum { SENSITIVITY_PARENTS = 8 };
-typedef struct sensitivity {
-    int cell;
-    int count;
-    int from[SENSITIVITY_PARENTS]; /* mesh cells */
-    double width[SENSITIVITY_PARENTS], source_term[SENSITIVITY_PARENTS],
-        pressure[SENSITIVITY_PARENTS];
-} sensitivity;
-
 typedef struct jacobian {
     const grid *g;
-    const unknowns *a;
-    const lubrication *f;
-    elasticity *e;
+    const unknowns *cells;
+    const lubrication *lubrication;
+    elasticity *elastic;
     double *width, *pressure; /* work over the mesh; width is zero outside the channel cells */
     double *full;             /* LAPACK storage of the transpose, factored */
     double *self_correction;  /* per numbered cell: what its self term of C lacks at the front */
@@ -39,8 +27,8 @@ typedef struct jacobian {
     double *influence;   /* folded C between numbered cells, one row a cell */
     int *pivots;
     size_t full_capacity, pivot_capacity, place_capacity;
-    multigrid pressures; /* the preconditioner, on the rectangle of the representative cells */
-    near_field widths;
+    multigrid multigrid; /* the preconditioner, on the rectangle of the representative cells */
+    near_field near_field;
     size_t *place;        /* of each numbered cell in it */
     double *weight;       /* the part of each that lies in the fold */
     thread_pool *threads; /* that share the loops, or NULL */
