@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "base/tuning.h"
 #include "flow/contact.h"
+#include "flow/leakoff.h"
 #include "tip/asymptote.h"
 #include <math.h>
 
@@ -80,8 +81,7 @@ double ilsai_tip_cells_leakoff(const front_pass *p, const front_cell *c,
                                tip_cell_history *history) {
     tip_cell_front at = {c->ell, c->cos_a, c->sin_a, p->g->dx, p->g->dy};
     *history = path_in_cell(p, c);
-    return ilsai_tip_cell_leakoff_last(p->material->C_prime, p->velocity, &at, history) /
-           (p->g->dx * p->g->dy);
+    return ilsai_leakoff_tip(p->material->C_prime, p->velocity, &at, history).volume;
 }
 
 /* Whether the cells that place the front in c are closed, which brings it no fluid. */
