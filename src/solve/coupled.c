@@ -7,6 +7,7 @@
 #include "solve/gmres.h"
 #include "solve/jacobian.h"
 #include <math.h>
+#include <stdbool.h>
 
 struct coupled {
     unknowns cells;
@@ -14,11 +15,11 @@ struct coupled {
     jacobian matrix;
     gmres *krylov;
     double *rhs, *step;
-    double *source_change;    /* change of the source terms at the front in this solve */
-    double *front_pressure;   /* change of the pressures there for the front's move in this solve */
-    double *closing_pressure; /* of closed cells: the pressure with which they closed or entered the
-                                 solve */
-    double *stress;  /* of channel cells: the pressure that holds them at their width, (4.7) */
+    /* Per numbered cell, changes in this solve by the sensitivities: of the source term, and of the
+     * pressure at a given width. */
+    double *source_change, *pressure_change;
+    double *closing_pressure; /* of a closed cell: the pressure when it closed or the solve began */
+    double *stress;  /* of a channel cell: sigma + C w, the pressure that holds its width */
     size_t capacity; /* numbered cells that the arrays over them have room for */
     int closed;      /* cells that are closed or drain */
     double residual; /* of the last linear solve, relative */
@@ -49,7 +50,7 @@ void ilsai_coupled_destroy(coupled **c) {
         ilsai_release((*c)->rhs);
         ilsai_release((*c)->step);
         ilsai_release((*c)->source_change);
-        ilsai_release((*c)->front_pressure);
+        ilsai_release((*c)->pressure_change);
         ilsai_release((*c)->stress);
         ilsai_release((*c)->closing_pressure);
         ilsai_release(*c);
@@ -65,7 +66,7 @@ static ilsa_status reserve(coupled *c, int count) {
     const grown_array arrays[] = {ILSAI_GROWN(c->rhs),
                                   ILSAI_GROWN(c->step),
                                   ILSAI_GROWN(c->source_change),
-                                  ILSAI_GROWN(c->front_pressure),
+                                  ILSAI_GROWN(c->pressure_change),
                                   ILSAI_GROWN(c->stress),
                                   ILSAI_GROWN(c->closing_pressure),
                                   ILSAI_GROWN(c->matrix.self_correction),
@@ -75,7 +76,7 @@ static ilsa_status reserve(coupled *c, int count) {
     return ilsai_grow((size_t)count, &c->capacity, arrays, sizeof arrays / sizeof *arrays);
 }
 
-static contact contact_of(coupled *c, const coupled_problem *problem, int late) {
+static contact contact_of(coupled *c, const coupled_problem *problem, bool late) {
     return (contact){.field = problem->contact,
                      .cells = &c->cells,
                      .old = problem->width_old,
@@ -106,7 +107,7 @@ static void add_pressures(void *context, int first, int end) {
         if (c->cells.unknown[k] != UNKNOWN_PRESSURE) {
             c->stress[k] = problem->sigma[cell] + c->matrix.pressure[cell] +
                            c->matrix.self_correction[k] * problem->width[cell] +
-                           c->front_pressure[k];
+                           c->pressure_change[k];
         }
         if (c->cells.unknown[k] < UNKNOWN_PRESSURE) {
             problem->pressure[cell] = c->stress[k];
@@ -135,7 +136,7 @@ static void balance_volumes(void *context, int first, int end) {
         source += problem->contact.retained ? problem->contact.retained[cell] : 0;
         c->rhs[k] = inflow + (source - (problem->width[cell] - problem->width_old[cell]));
         if (c->cells.unknown[k] == UNKNOWN_CONTACT) {
-            c->rhs[k] -= ilsai_jacobian_without_width(&c->matrix, k) *
+            c->rhs[k] -= ilsai_jacobian_extra_diagonal(&c->matrix, k) *
                          (problem->pressure[cell] - c->closing_pressure[k]);
         }
     }
@@ -182,38 +183,40 @@ static double step_length(const coupled *c, const coupled_problem *problem) {
     return length;
 }
 
-/* Changes the unknown of numbered cell k, and what of the cell answers to the others'. */
+/* Changes the unknown of numbered cell k, and what its sensitivity ties to other unknowns. */
 static void move_cell(const coupled *c, const coupled_problem *problem, int k, double length) {
     int cell = c->cells.cell[k];
     double delta = length * c->step[k], *width = &problem->width[cell];
     switch (c->cells.unknown[k]) {
     case UNKNOWN_WIDTH:
         *width += delta;
-        c->front_pressure[k] += length * ilsai_jacobian_front_pressure(&c->matrix, k, c->step);
+        c->pressure_change[k] += length * ilsai_jacobian_pressure_change(&c->matrix, k, c->step);
         break;
     case UNKNOWN_RETAINED:
         problem->contact.retained[cell] += delta;
         break;
     default:
         problem->pressure[cell] += delta;
-        delta = length * ilsai_jacobian_tip_width(&c->matrix, k, c->step);
+        delta = length * ilsai_jacobian_width_change(&c->matrix, k, c->step);
         *width = fmax(*width + delta, (1 - ILSAI_WIDTH_DROP) * *width);
     }
-    c->source_change[k] += length * ilsai_jacobian_tip_source(&c->matrix, k, c->step);
+    c->source_change[k] += length * ilsai_jacobian_source_change(&c->matrix, k, c->step);
 }
 
 /* What a Newton step has done. */
 typedef struct progress {
-    double change; /* the largest of a width, or of what leaks, over the largest width, or NaN */
+    double change; /* the largest of a width, or of a retained leak-off, over the largest width; NaN
+                      where the step is no number */
     int switched;  /* cells that have closed or opened */
 } progress;
 
 /*
- * Whether a late solve has gone too far: leak-off beyond its bounds against the largest width, or
- * the pressure in a closed cell beyond the closure stress against the largest net pressure.
+ * Whether a late solve has gone too far. It has where the leak-off of a draining cell is beyond its
+ * bounds by too much of the largest width, or the pressure in a closed cell beyond the closure
+ * stress by too much of the largest net pressure.
  */
-static int is_forced(coupled *c, const coupled_problem *problem) {
-    contact faces = contact_of(c, problem, 1);
+static bool is_forced(coupled *c, const coupled_problem *problem) {
+    contact faces = contact_of(c, problem, true);
     double net = 0, width = 0, excess = 0, violation = 0;
     for (int k = 0; k < c->cells.count; k++) {
         int cell = c->cells.cell[k];
@@ -228,7 +231,7 @@ static int is_forced(coupled *c, const coupled_problem *problem) {
     return excess > ILSAI_CONTACT_FORCED * net || violation > ILSAI_CONTACT_FORCED * width;
 }
 
-static progress take_step(coupled *c, const coupled_problem *problem, double length, int late) {
+static progress take_step(coupled *c, const coupled_problem *problem, double length, bool late) {
     contact faces = contact_of(c, problem, late);
     double change = 0, largest = 0, sum = 0;
     int switched = 0;
@@ -250,10 +253,11 @@ static progress take_step(coupled *c, const coupled_problem *problem, double len
 }
 
 /*
- * The flow into a cell that opens is large for its width until the pressures have met: it would
- * make Newton's step a negative one, so that the first goes without its answer to the width.
+ * The flow into a cell that opens is large for its width until the pressures on both sides have
+ * met. Its derivative by the width would turn Newton's step around, so that the first iteration
+ * goes without that derivative.
  */
-static void hold_slopes(const coupled *c, int k) {
+static void drop_width_derivatives(const coupled *c, int k) {
     for (int face = 0; face < GRID_FACES; face++) {
         int at = GRID_FACES * k + face, other = c->cells.neighbour[at];
         c->lubrication.by_width[at] = 0;
@@ -264,16 +268,17 @@ static void hold_slopes(const coupled *c, int k) {
     }
 }
 
-static void hold_opening(const coupled *c, const coupled_problem *problem) {
+static void calm_opening_cells(const coupled *c, const coupled_problem *problem) {
     for (int k = 0; k < c->cells.count; k++) {
         if (problem->contact.state[c->cells.cell[k]] == CONTACT_OPENING) {
-            hold_slopes(c, k);
+            drop_width_derivatives(c, k);
         }
     }
 }
 
-/* Opens the closed cells that are to open with the widths as they are, and counts the others. */
-static int reopen(coupled *c, const coupled_problem *problem, int late) {
+/* Opens the closed cells whose pressure calls for it at the widths as they are, and counts the
+ * cells that are closed or drain after that. Returns how many were opened. */
+static int reopen(coupled *c, const coupled_problem *problem, bool late) {
     contact faces = contact_of(c, problem, late);
     int opened = 0;
     c->closed = 0;
@@ -288,44 +293,45 @@ static int reopen(coupled *c, const coupled_problem *problem, int late) {
     return opened;
 }
 
-static int choose_dense(const coupled *c, const coupled_problem *problem) {
+static bool choose_dense(const coupled *c, const coupled_problem *problem) {
     return problem->linear == ILSA_LINEAR_DENSE ||
            (problem->linear == ILSA_LINEAR_AUTO && c->cells.count <= ILSAI_DENSE_UNKNOWNS);
 }
 
-/* Error left in the widths after a full Newton step of relative size change. */
+/* Estimate of the error left in the widths after a full Newton step of relative size `change`. */
 static double error_left(const coupled *c, double change) {
     return change * (ILSAI_NEWTON_CURVATURE * change + ILSAI_NEWTON_RESIDUAL * c->residual);
 }
 
-/* The influence matrix is made anew where the unknowns are others than in the last solve. */
-static ilsa_status solve_linear(coupled *c, int dense, int others, coupled_counts *counts) {
-    ilsa_status status = dense && others ? ilsai_jacobian_set_influence(&c->matrix) : ILSA_OK;
-    if (status == ILSA_OK) {
-        counts->newton++;
-        status = dense ? ilsai_jacobian_solve_full(&c->matrix, c->rhs, c->step)
-                       : solve_iterative(c, counts);
+/* The influence matrix is made anew where cells have changed their unknowns since the last solve.
+ */
+static ilsa_status solve_linear(coupled *c, bool dense, bool changed, coupled_counts *counts) {
+    if (dense && changed) {
+        ILSAI_TRY(ilsai_jacobian_set_influence(&c->matrix));
     }
-    return status == ILSA_ERR_NUMERIC ? ILSA_STEP_REJECTED : status;
+    counts->newton++;
+    return dense ? ilsai_jacobian_solve_full(&c->matrix, c->rhs, c->step)
+                 : solve_iterative(c, counts);
 }
 
 /*
- * Newton's method; where cells close or open a semi-smooth one: each iteration solves for the
- * unknowns that their states call for, and leaves the states that its solution calls for.
+ * Newton's method, which is semi-smooth where cells close or open: each iteration solves for the
+ * unknowns that the states of contact call for, and leaves the states that its solution calls for.
  */
 static ilsa_status newton(coupled *c, const coupled_problem *problem, coupled_counts *counts) {
-    int dense = choose_dense(c, problem), left = ILSAI_NEWTON_MAX;
+    bool dense = choose_dense(c, problem);
+    int left = ILSAI_NEWTON_MAX;
     progress made = {0, 1};
     c->residual = 0;
     for (int k = 0; k < ILSAI_CONTACT_MAX && left > 0; k++) {
-        int late = k >= ILSAI_CONTACT_LATE;
+        bool late = k >= ILSAI_CONTACT_LATE;
         ilsai_coupled_pressure(c, problem, counts);
         made.switched += reopen(c, problem, late);
         set_rhs(c, problem);
         if (made.switched > 0 && problem->contact.state) {
-            hold_opening(c, problem);
+            calm_opening_cells(c, problem);
         }
-        ILSAI_TRY(solve_linear(c, dense, made.switched, counts));
+        ILSAI_TRY(solve_linear(c, dense, made.switched > 0, counts));
         double length = step_length(c, problem);
         made = take_step(c, problem, length, late);
         if (isnan(made.change)) {
@@ -339,11 +345,11 @@ static ilsa_status newton(coupled *c, const coupled_problem *problem, coupled_co
     return ILSA_STEP_REJECTED;
 }
 
-/* Which numbered cell has which sensitivity. */
-static void find_sensitivities(coupled *c, const coupled_problem *problem) {
+/* Sets what a solve begins with in each numbered cell, its sensitivity included. */
+static void begin_cells(coupled *c, const coupled_problem *problem) {
     for (int k = 0; k < c->cells.count; k++) {
         c->matrix.sensitivity_of[k] = -1;
-        c->source_change[k] = c->front_pressure[k] = 0;
+        c->source_change[k] = c->pressure_change[k] = 0;
         c->matrix.self_correction[k] =
             problem->self_correction ? problem->self_correction[c->cells.cell[k]] : 0;
     }
@@ -372,9 +378,9 @@ ilsa_status ilsai_coupled_solve(coupled *c, const coupled_problem *problem,
     c->matrix.lubrication = &c->lubrication;
     c->matrix.elastic = problem->elastic;
     c->matrix.sensitivity = problem->sensitivity_count > 0 ? problem->sensitivity : NULL;
-    find_sensitivities(c, problem);
+    begin_cells(c, problem);
     if (problem->contact.state) {
-        contact faces = contact_of(c, problem, 0);
+        contact faces = contact_of(c, problem, false);
         ilsai_contact_begin(&faces);
     }
     c->matrix.threads = problem->threads;

@@ -8,17 +8,20 @@
 #include <ilsa/solver.h>
 #include <lapacke.h>
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 /*
- * The spring of a cell, over 1 / C(0, 0): what C^-1 is on average over the waves that a step's flow
- * does not level out.
+ * In the preconditioner elasticity is a spring in every cell, of this many times 1 / C_0, where C_0
+ * is the entry of a cell with itself. That is the mean of C^-1 over the waves of pressure that the
+ * flow of a step does not level out.
  */
 #define JACOBIAN_SPRING 3.0
-/* What of it holds the pressure of a closed cell, from which fluid hardly moves, to where it was.
- */
+/* The part of that spring which holds the pressure of a closed cell to its value when it closed.
+ * Hardly any fluid moves there, so that the pressure would be left undetermined. */
 #define JACOBIAN_SOFT 1e-6
-/* In the preconditioner: the spring of a cell that drains, over all that pulls at its pressure. */
+/* In the preconditioner the spring of a draining cell is this many times the sum of its other
+ * springs and of the conductances around it. */
 #define JACOBIAN_STIFF 1e6
 
 void ilsai_jacobian_destroy(jacobian *m) {
@@ -36,21 +39,21 @@ void ilsai_jacobian_destroy(jacobian *m) {
     memset(m, 0, sizeof *m);
 }
 
-/* Closed cells answer to nothing. */
+/* The sensitivity of numbered cell k. NULL: it has none, as a draining or closed cell. */
 static const sensitivity *sensitivity_of(const jacobian *m, int k) {
-    int answers = m->cells->unknown[k] == UNKNOWN_WIDTH || m->cells->unknown[k] == UNKNOWN_PRESSURE;
-    return m->sensitivity && answers && m->sensitivity_of[k] >= 0
+    bool open = m->cells->unknown[k] == UNKNOWN_WIDTH || m->cells->unknown[k] == UNKNOWN_PRESSURE;
+    return m->sensitivity && open && m->sensitivity_of[k] >= 0
                ? &m->sensitivity[m->sensitivity_of[k]]
                : NULL;
 }
 
 /* Whether the width of numbered cell k is an unknown. */
-static int is_free(const jacobian *m, int k) {
+static bool is_free(const jacobian *m, int k) {
     return m->cells->unknown[k] == UNKNOWN_WIDTH;
 }
 
-/* Whether its pressure is, that of a tip cell or a closed one. */
-static int has_pressure(const jacobian *m, int k) {
+/* Whether its pressure is an unknown, as in a tip cell and in a closed cell. */
+static bool has_pressure(const jacobian *m, int k) {
     return m->cells->unknown[k] >= UNKNOWN_PRESSURE;
 }
 
@@ -60,45 +63,45 @@ static double self_entry(const jacobian *m) {
                                        m->cells->cell[0] / m->g->nx);
 }
 
-/* What a pressure takes of a cell where elasticity is a spring: see JACOBIAN_SPRING. */
+/* Width that a unit of pressure brings where elasticity is a spring, see JACOBIAN_SPRING. */
 static double spring_of(const jacobian *m) {
     return JACOBIAN_SPRING / self_entry(m);
 }
 
-double ilsai_jacobian_without_width(const jacobian *m, int k) {
+double ilsai_jacobian_extra_diagonal(const jacobian *m, int k) {
     int unknown = m->cells->unknown[k];
     return unknown == UNKNOWN_RETAINED  ? -1
            : unknown == UNKNOWN_CONTACT ? JACOBIAN_SOFT * spring_of(m)
                                         : 0;
 }
 
-/* Sum of a sensitivity's weights times the changes of the widths it answers to. */
-static double respond(const jacobian *m, const sensitivity *r, const double *weight,
-                      const double *x) {
+/* The change for changes x of the unknowns, given the derivatives of a sensitivity. */
+static double change_by(const jacobian *m, const sensitivity *r, const double *derivative,
+                        const double *x) {
     double sum = 0;
-    for (int p = 0; r && p < r->count; p++) {
+    for (int p = 0; p < r->count; p++) {
         int number = m->cells->number[r->from[p]];
-        sum += is_free(m, number) ? weight[p] * x[number] : 0;
+        sum += is_free(m, number) ? derivative[p] * x[number] : 0;
     }
     return sum;
 }
 
-double ilsai_jacobian_tip_width(const jacobian *m, int k, const double *x) {
+double ilsai_jacobian_width_change(const jacobian *m, int k, const double *x) {
     const sensitivity *r = sensitivity_of(m, k);
-    return r ? respond(m, r, r->width, x) : 0;
+    return r ? change_by(m, r, r->width, x) : 0;
 }
 
-double ilsai_jacobian_tip_source(const jacobian *m, int k, const double *x) {
+double ilsai_jacobian_source_change(const jacobian *m, int k, const double *x) {
     const sensitivity *r = sensitivity_of(m, k);
-    return r ? respond(m, r, r->source_term, x) : 0;
+    return r ? change_by(m, r, r->source_term, x) : 0;
 }
 
-double ilsai_jacobian_front_pressure(const jacobian *m, int k, const double *x) {
+double ilsai_jacobian_pressure_change(const jacobian *m, int k, const double *x) {
     const sensitivity *r = sensitivity_of(m, k);
-    return r ? respond(m, r, r->pressure, x) : 0;
+    return r ? change_by(m, r, r->pressure, x) : 0;
 }
 
-/* A loop over the numbered cells: what a product or the preconditioner takes and gives. */
+/* A loop over the numbered cells, which reads the vector x or writes y. */
 typedef struct loop {
     jacobian *m;
     const double *x;
@@ -115,7 +118,7 @@ static void set_widths(void *context, int first, int end) {
     const jacobian *m = l->m;
     for (int k = first; k < end; k++) {
         m->width[m->cells->cell[k]] =
-            is_free(m, k) ? l->x[k] : ilsai_jacobian_tip_width(m, k, l->x);
+            is_free(m, k) ? l->x[k] : ilsai_jacobian_width_change(m, k, l->x);
     }
 }
 
@@ -126,14 +129,15 @@ static void complete_pressures(void *context, int first, int end) {
         double *pressure = &m->pressure[m->cells->cell[k]];
         if (is_free(m, k)) {
             *pressure +=
-                m->self_correction[k] * l->x[k] + ilsai_jacobian_front_pressure(m, k, l->x);
+                m->self_correction[k] * l->x[k] + ilsai_jacobian_pressure_change(m, k, l->x);
         } else if (has_pressure(m, k)) {
             *pressure = l->x[k];
         }
     }
 }
 
-/* Pressure changes that the width changes x of the channel cells bring about, and the tip's own. */
+/* Sets m->width and m->pressure to the changes of widths and pressures for changes x of the
+ * unknowns. */
 static void apply_elasticity(jacobian *m, const double *x) {
     share_cells(set_widths, m, x, NULL);
     double start = ilsai_clock();
@@ -167,8 +171,8 @@ static void balance_volumes(void *context, int first, int end) {
                 from_width += m->lubrication->by_width[at] * (w + m->width[cells->cell[other]]);
             }
         }
-        double own = is_free(m, k) ? w : w + ilsai_jacobian_without_width(m, k) * l->x[k];
-        l->y[k] = own - from_width - from_pressure - ilsai_jacobian_tip_source(m, k, l->x);
+        double own = is_free(m, k) ? w : w + ilsai_jacobian_extra_diagonal(m, k) * l->x[k];
+        l->y[k] = own - from_width - from_pressure - ilsai_jacobian_source_change(m, k, l->x);
     }
 }
 
@@ -179,7 +183,8 @@ void ilsai_jacobian_multiply(void *context, const double *x, double *y) {
     share_cells(clear_widths, m, x, NULL);
 }
 
-/* What the self term of numbered cell k lacks, its own part in the front's move included. */
+/* What the self term of numbered cell k lacks, less what the front takes of it when the width of
+ * the cell itself moves it. */
 static double corrected_self(const jacobian *m, int k) {
     const sensitivity *r = sensitivity_of(m, k);
     double sum = m->self_correction[k];
@@ -191,12 +196,13 @@ static double corrected_self(const jacobian *m, int k) {
 
 /* ---- Preconditioner ----------------------------------------------------------------------- */
 
-/* The part of a cell on the axis of a folded scene, of its faces across, that is in the fold. */
-static double half_on_axis(int mirror, int count, int at, int first) {
+/* The part of a cell, or of a face that the axis cuts, which lies on the solved side of the axis.
+ */
+static double half_on_axis(bool mirror, int count, int at, int first) {
     return mirror && count % 2 && at == first ? 0.5 : 1;
 }
 
-/* Places and weights of the numbered cells on the rectangle of the preconditioner. */
+/* Sets where the numbered cells lie on the rectangle of the preconditioner, and their weights. */
 static void place_cells(void *context, int first, int end) {
     jacobian *m = ((const loop *)context)->m;
     const grid *g = m->g;
@@ -210,10 +216,11 @@ static void place_cells(void *context, int first, int end) {
     }
 }
 
-/* The pressure of a cell that drains is as its neighbours' widths have it: no flow changes it. */
-static double pinned(const jacobian *m, int k, double spring) {
+/* The spring of a cell whose width is given. The pressure of a draining cell follows from the
+ * widths around it and no flow changes it, so that its spring is a stiff one. */
+static double spring_of_given_width(const jacobian *m, int k, double spring) {
     if (m->cells->unknown[k] != UNKNOWN_RETAINED) {
-        return ilsai_jacobian_without_width(m, k);
+        return ilsai_jacobian_extra_diagonal(m, k);
     }
     const double *by_pressure = m->lubrication->by_pressure + (size_t)GRID_FACES * (size_t)k;
     double pull = spring;
@@ -234,7 +241,8 @@ static void set_flow(void *context, int first, int end) {
         size_t at = m->place[k];
         l->right[at] = half_on_axis(g->mirror_y, g->ny, j, g->lo_y) * by_pressure[GRID_RIGHT];
         l->up[at] = half_on_axis(g->mirror_x, g->nx, i, g->lo_x) * by_pressure[GRID_UP];
-        l->spring[at] = m->weight[k] * (is_free(m, k) ? spring : pinned(m, k, spring));
+        l->spring[at] =
+            m->weight[k] * (is_free(m, k) ? spring : spring_of_given_width(m, k, spring));
     }
 }
 
@@ -306,9 +314,10 @@ static void read_out(void *context, int first, int end) {
 }
 
 /*
- * The matrix is nearly (d - dt A) C: on pressures C^-1 is a spring d wherever flow does not level
- * them out. So first pressures by multigrid, then widths by the near field of C; where the pressure
- * is the unknown it stays, and in cells that drain the spring has taken what leaks less.
+ * The matrix is nearly (d - dt A) C, because C^-1 acts on pressures as a spring d wherever flow
+ * does not level them out. So multigrid finds pressures first, and the near field of C finds widths
+ * from them. Where the pressure is the unknown it is the result. In a draining cell the result is
+ * the fluid that its spring takes up, with the sign of the part of the leak-off that it retains.
  */
 void ilsai_jacobian_precondition(void *context, const double *x, double *y) {
     jacobian *m = context;
@@ -323,7 +332,7 @@ void ilsai_jacobian_precondition(void *context, const double *x, double *y) {
 
 /* ---- Full matrix -------------------------------------------------------------------------- */
 
-/* C between cells a and b, b's images included. */
+/* The entry of C between numbered cells a and b, with those of the images of b added. */
 static double folded_entry(const jacobian *m, int a, int b) {
     int image[4], nx = m->g->nx, cell = m->cells->cell[b], here = m->cells->cell[a];
     int count = ilsai_grid_images(m->g, cell % nx, cell / nx, image);
@@ -335,16 +344,16 @@ static double folded_entry(const jacobian *m, int a, int b) {
     return sum;
 }
 
-/* Adds weights of a sensitivity, times value, to a row. */
+/* Adds value times the derivatives of a sensitivity to a row. */
 static void add_sensitivity(const jacobian *m, double *out, const sensitivity *r,
-                            const double *weight, double value) {
+                            const double *derivative, double value) {
     for (int p = 0; r && p < r->count; p++) {
         int number = m->cells->number[r->from[p]];
-        out[number] += is_free(m, number) ? value * weight[p] : 0;
+        out[number] += is_free(m, number) ? value * derivative[p] : 0;
     }
 }
 
-/* Adds what the width of an numbered cell is, times value, to a row. */
+/* Adds value times the width of numbered cell k, in terms of the unknowns, to a row. */
 static void add_width(const jacobian *m, double *out, int k, double value) {
     const sensitivity *r = sensitivity_of(m, k);
     if (is_free(m, k)) {
@@ -355,20 +364,17 @@ static void add_width(const jacobian *m, double *out, int k, double value) {
 }
 
 /*
- * Where a pressure is the unknown it is, in the full matrix, the pressure over this, a width like
- * the others: pivots are chosen among the unknowns, and must not depend on units.
+ * In the full matrix a pressure that is an unknown is divided by self_entry, so that all unknowns
+ * are widths: pivots are chosen among the unknowns, and the choice must not depend on units.
  */
-static double pressure_unit(const jacobian *m) {
-    return self_entry(m);
-}
 
-/* What the pressure of numbered cell row is in terms of the unknowns: C with the tips'
- * sensitivities. */
+/* Sets out to the pressure of numbered cell row in terms of the unknowns: a row of C, with the
+ * widths of the tip cells replaced by their sensitivities. */
 static void fill_influence_row(jacobian *m, int row, double *out) {
     const unknowns *cells = m->cells;
     memset(out, 0, (size_t)cells->count * sizeof *out);
     if (has_pressure(m, row)) {
-        out[row] = pressure_unit(m);
+        out[row] = self_entry(m);
         return;
     }
     for (int k = 0; k < cells->count; k++) {
@@ -395,7 +401,7 @@ ilsa_status ilsai_jacobian_set_influence(jacobian *m) {
     return ILSA_OK;
 }
 
-/* Row k of the full matrix, stored as a column of the transpose. */
+/* Sets a row of the full matrix, which is stored as a column of the transpose. */
 static void fill_full_row(jacobian *m, int row) {
     const unknowns *cells = m->cells;
     size_t n = (size_t)cells->count;
@@ -417,8 +423,8 @@ static void fill_full_row(jacobian *m, int row) {
     const sensitivity *r = sensitivity_of(m, row);
     add_sensitivity(m, out, r, r ? r->source_term : NULL, -1);
     if (!is_free(m, row)) {
-        double unit = has_pressure(m, row) ? pressure_unit(m) : 1;
-        out[row] += unit * ilsai_jacobian_without_width(m, row);
+        double unit = has_pressure(m, row) ? self_entry(m) : 1;
+        out[row] += unit * ilsai_jacobian_extra_diagonal(m, row);
     }
 }
 
@@ -434,8 +440,8 @@ ilsa_status ilsai_jacobian_solve_full(jacobian *m, const double *b, double *x) {
         LAPACKE_dgetrs_work(LAPACK_COL_MAJOR, 'T', n, 1, m->full, n, m->pivots, x, n);
     }
     for (int k = 0; k < n; k++) {
-        x[k] *= has_pressure(m, k) ? pressure_unit(m) : 1;
+        x[k] *= has_pressure(m, k) ? self_entry(m) : 1;
     }
     m->seconds_preconditioner += ilsai_clock() - start;
-    return info == 0 ? ILSA_OK : ILSA_ERR_NUMERIC;
+    return info == 0 ? ILSA_OK : ILSA_STEP_REJECTED;
 }
