@@ -1,6 +1,6 @@
 # The care of the sources.
 
-.PHONY: format format-check lint tidy cppcheck analyze
+.PHONY: format format-check rooms rooms-figure lint tidy cppcheck analyze
 C_FILES  = $(shell find include src tests bench examples -name '*.[ch]' -o -name '*.cpp')
 LINTED   = $(SOURCES) $(RUN) $(wildcard examples/*.c bench/*.c tests/*.c tests/fuzz/*.c)
 
@@ -9,6 +9,11 @@ format: ## clang-format over all sources, in place
 
 format-check: ## fails where clang-format would change something
 	clang-format --dry-run -Werror $(C_FILES)
+
+rooms: ## fails where a file of src/ includes from a room below its own; prints who includes whom
+	@sh tests/rooms.sh
+rooms-figure: ## draws docs/figures/rooms.svg anew
+	@sh tests/rooms.sh draw
 
 # Each fails on a finding. What is switched off stands with its reason in .clang-tidy (and those of
 # bench/ and tests/), in .cppcheck, and below.
