@@ -5,6 +5,7 @@
  *     bench_accuracy_parts [marching] [survey] [elasticity] [leakoff]
  */
 #include "common_radial.h"
+#include "common_worst.h"
 
 #include "elastic/elasticity.h"
 #include "front/march.h"
@@ -114,8 +115,8 @@ static void add(spread *s, const disc *d, int cell, double error) {
     const double slope = fmin(x, y) / fmax(x, y);
     s->sum += error;
     s->count++;
-    s->low = fmin(s->low, error);
-    s->high = fmax(s->high, error);
+    s->low = smaller_of(s->low, error);
+    s->high = larger_of(s->high, error);
     if (slope < 0.2) {
         s->axis += error;
         s->on_axis++;

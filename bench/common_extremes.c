@@ -1,4 +1,5 @@
 #include "common_extremes.h"
+#include "common_worst.h"
 
 #include <math.h>
 #include <signal.h>
@@ -371,7 +372,7 @@ void extreme_case(extreme_sweep *sweep, const extreme_scene *scene, extreme_scri
     sweep->cases++;
     sweep->count[result.verdict]++;
     sweep->seconds += result.seconds;
-    sweep->worst_R = fmax(sweep->worst_R, fabs(result.error_R));
+    sweep->worst_R = larger_of(sweep->worst_R, fabs(result.error_R));
     if (sweep->shown)
         sweep->shown(sweep, name, &result);
 }

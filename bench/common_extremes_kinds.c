@@ -1,5 +1,6 @@
 /* The kinds of extremes and their cases. */
 #include "common_extremes.h"
+#include "common_worst.h"
 
 #include <math.h>
 
@@ -47,8 +48,8 @@ static void grow_uniform(extreme_trial *t) {
     }
     for (int n = 0; n < m.nx * m.ny; n++)
         if (kind[n] == ILSA_CELL_CHANNEL) {
-            low = fmin(low, pressure[n]);
-            high = fmax(high, pressure[n]);
+            low = smaller_of(low, pressure[n]);
+            high = larger_of(high, pressure[n]);
         }
     if (!(high < 1.001 * low))
         extreme_fail(t, "net pressure from %g to %g", low, high);

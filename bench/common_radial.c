@@ -1,4 +1,5 @@
 #include "common_radial.h"
+#include "common_worst.h"
 
 #include "tip/penny.h"
 
@@ -241,10 +242,10 @@ radial_front radial_measure(ilsa_solver *solver) {
         const ilsa_front_point *a = &f[i], *b = &f[i + 1 < count ? i + 1 : 0];
         const double ra = hypot(a->x, a->y), rb = hypot(b->x, b->y);
         const double angle = asin((a->x * b->y - a->y * b->x) / (ra * rb));
-        r.low = fmin(r.low, ra);
-        r.high = fmax(r.high, ra);
-        r.axis = fmax(r.axis, on_ray(a, b, 1, 0));
-        r.diagonal = fmax(r.diagonal, on_ray(a, b, 1, 1));
+        r.low = smaller_of(r.low, ra);
+        r.high = larger_of(r.high, ra);
+        r.axis = larger_of(r.axis, on_ray(a, b, 1, 0));
+        r.diagonal = larger_of(r.diagonal, on_ray(a, b, 1, 1));
         sum += 0.5 * (ra + rb) * angle;
         turn += angle;
     }
@@ -302,7 +303,7 @@ radial_growth radial_grow(const penny_case *c, double cells, double aspect, doub
         g.status = ilsa_advance_one(solver, c->time, &report);
         g.front = radial_measure(solver);
         if (g.front.mean > 0.8 * R)
-            g.roundness = fmax(g.roundness, (g.front.high - g.front.low) / g.front.mean);
+            g.roundness = larger_of(g.roundness, (g.front.high - g.front.low) / g.front.mean);
     }
     finish(&g, solver, c->law);
     ilsa_solver_destroy(&solver);

@@ -42,7 +42,7 @@ static int wanted(const char *name, int argc, char **argv) {
 static void print_row(const char *name, const char *about, const extreme_sweep *s) {
     printf("| %s | %s | %d | %d | %d | %d | ", name, about, s->cases, s->count[EXTREME_RIGHT],
            s->count[EXTREME_REFUSED], s->count[EXTREME_FAILED]);
-    if (s->worst_R > 0)
+    if (s->worst_R != 0)
         printf("%.2f ", 100 * s->worst_R);
     printf("| %.0f |\n", s->seconds);
     fflush(stdout);

@@ -3,6 +3,7 @@
  * of the box by FFT, where it is symmetric; and of a new box.
  */
 #include "base/clock.h"
+#include "common_worst.h"
 #include "elastic/elasticity.h"
 
 #include <math.h>
@@ -133,8 +134,8 @@ static double time_direct(subject s, int bx, int by) {
 static double largest_difference(const double *p, const double *q, int count) {
     double difference = 0, largest = 0;
     for (int n = 0; n < count; n++) {
-        difference = fmax(difference, fabs(p[n] - q[n]));
-        largest = fmax(largest, fabs(q[n]));
+        difference = larger_of(difference, fabs(p[n] - q[n]));
+        largest = larger_of(largest, fabs(q[n]));
     }
     return difference / largest;
 }

@@ -6,6 +6,7 @@
  *     bench_scenes [NAME ...]      scenes whose name contains NAME; without: all sixteen
  */
 #include "common_layers.h"
+#include "common_worst.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -48,7 +49,7 @@ static ilsa_status follow(run *r, ilsa_solver *solver, double time, int *steps) 
         if (status != ILSA_OK || ilsa_get_summary(solver, &s) != ILSA_OK)
             break;
         products[(*steps)++] = (double)report.elasticity_products;
-        r->balance = fmax(r->balance, unbalance(&s));
+        r->balance = larger_of(r->balance, unbalance(&s));
         r->worst_unknowns = s.unknowns > r->worst_unknowns ? s.unknowns : r->worst_unknowns;
     }
     return status;

@@ -8,6 +8,7 @@
  * half extent.
  */
 #include "common_speed.h"
+#include "common_worst.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -101,9 +102,9 @@ static double apart(const curve *a, const curve *b) {
     for (size_t i = 0; i < a->count; i++) {
         double nearest = HUGE_VAL;
         for (size_t k = 0; k < b->count; k++)
-            nearest = fmin(nearest,
-                           to_segment(&a->at[i], &b->at[k], &b->at[k + 1 < b->count ? k + 1 : 0]));
-        worst = fmax(worst, nearest);
+            nearest = smaller_of(
+                nearest, to_segment(&a->at[i], &b->at[k], &b->at[k + 1 < b->count ? k + 1 : 0]));
+        worst = larger_of(worst, nearest);
     }
     return worst;
 }
@@ -117,7 +118,7 @@ static double difference(ilsa_solver *ours, ilsa_solver *plain) {
         return NAN;
     const double extent =
         0.5 * fmax(s.extent_x_max - s.extent_x_min, s.extent_y_max - s.extent_y_min);
-    return 100 * fmax(apart(&a, &b), apart(&b, &a)) / extent;
+    return 100 * larger_of(apart(&a, &b), apart(&b, &a)) / extent;
 }
 
 /* Height of the footprint on the y axis over its largest: below 1 it has a waist. */

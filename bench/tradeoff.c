@@ -7,6 +7,7 @@
  */
 #include "common_radial.h"
 #include "common_speed.h"
+#include "common_worst.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -97,7 +98,8 @@ static run measure(const speed_scene *scene, int cells, int level, const answer 
                            100 * (a.efficiency - truth->efficiency)};
     }
     r.seconds = least;
-    r.worst = fmax(fmax(fabs(r.error.radius), fabs(r.error.width)), fabs(r.error.efficiency));
+    r.worst =
+        larger_of(larger_of(fabs(r.error.radius), fabs(r.error.width)), fabs(r.error.efficiency));
     return r;
 }
 

@@ -122,4 +122,4 @@ $(TEST_PROGRAMS): $(BIN)/%: $(B)/obj/tests/%.o $(call objects,$(TESTS_WITH) $(BE
 $(FUZZERS:%=$(BIN)/%): LDFLAGS += $(if $(filter fuzz,$(FLAVOUR)),-fsanitize=fuzzer)
 $(FUZZERS:%=$(BIN)/%): $(BIN)/%: $(B)/obj/tests/fuzz/%.o $(call objects,$(FUZZ_WITH)) $(LIB_A)
 	$(call link,$(if $(filter %/fuzz_scene,$@),$(call pc_libs,$(INIH_PC))))
-$(BIN)/fuzz_scene: $(call objects,$(filter %/scene.c %/draft.c %/keys.c %/ini_file.c,$(RUN)))
+$(BIN)/fuzz_scene: $(call objects,$(filter-out %/main.c,$(RUN)))

@@ -1,6 +1,6 @@
 # The tests, and other ways to run them; `check` itself stands in the Makefile.
 
-.PHONY: check-long asan usan tsan same-answer valgrind coverage fuzz
+.PHONY: check-long asan usan tsan same-answer valgrind coverage fuzz mutants
 T           =
 CANDIDATES := $(or $(SOME_TESTS),$(TESTS) $(FUZZERS) $(if $(ILSA_LONG),$(TESTS_LONG)))
 CHECKED    := $(if $(T),$(foreach t,$(CANDIDATES),$(if $(findstring $(T),$(t)),$(t))),$(CANDIDATES))
@@ -78,3 +78,9 @@ coverage: ## the lines and branches of src/ that the tests reach, and the lines 
 	@for f in $(SOURCES); do $(GCOV) -t -o build/coverage/obj/$${f%.c}.o $$f; done 2>/dev/null \
 	    | awk -F: '$$2 + 0 == 0 && $$3 == "Source" { file = $$4 } \
 	        $$1 ~ /#####/ && file ~ /^src/ { sub(/^[^:]*: */, ""); print file ":" $$0 }'
+
+# The 60 take an hour or so; a run that was interrupted goes on where it stopped.
+MUTANT = 1..60
+SEED   = 1
+mutants: ## how many small faults of src/ the tests find; MUTANT=1..20 for some of the 60
+	@sh tests/mutants.sh $(MUTANT) $(SEED)

@@ -1,13 +1,9 @@
 #include "host.h"
+#include "check.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static void stop(const char *what, ilsa_status status, const char *message) {
     fail_msg("%s: %s: %s", what, ilsa_status_text(status), message);

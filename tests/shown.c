@@ -1,7 +1,6 @@
 #include "shown.h"
-
 #include "../bench/common_layers.h"
-#include "numbers.h"
+#include "check.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -118,12 +117,12 @@ static void compare_fields(const ilsa_mesh_def *m, const ilsa_solver *a, const i
         const int other = shown_turned_cell(m, turn, k);
         if (ka[k] != kb[other])
             *d = (shown_difference){INFINITY, INFINITY, INFINITY, INFINITY};
-        width = fmax(width, wa[k]);
-        d->width = larger(d->width, fabs(wb[other] / u.length - wa[k]));
+        width = larger_of(width, wa[k]);
+        d->width = worst_of(d->width, fabs(wb[other] / u.length - wa[k]));
         if (ka[k] < ILSA_CELL_SURVEY)
             continue;
-        pressure = fmax(pressure, fabs(pa[k] - sigma[k]));
-        d->pressure = larger(d->pressure, fabs(pb[other] / stress - pa[k]));
+        pressure = larger_of(pressure, fabs(pa[k] - sigma[k]));
+        d->pressure = worst_of(d->pressure, fabs(pb[other] / stress - pa[k]));
     }
     d->width /= width;
     d->pressure /= pressure;
@@ -142,14 +141,14 @@ static void compare_front(const ilsa_mesh_def *m, ilsa_solver *a, ilsa_solver *b
         distance[bt[k].cell] = bt[k].s / u.length;
     for (size_t k = 0; k < count_a && d->front < INFINITY; k++) {
         const double other = distance[shown_turned_cell(m, turn, at[k].cell)];
-        d->front = larger(d->front, fabs(other - at[k].s) / fmin(m->dx, m->dy));
+        d->front = worst_of(d->front, fabs(other - at[k].s) / fmin(m->dx, m->dy));
     }
     free(distance);
 }
 
 shown_difference shown_compare(ilsa_solver *a, ilsa_solver *b, shown_units u, int turn) {
     ilsa_mesh_def mesh;
-    shown_difference d = {0};
+    shown_difference d = SHOWN_NOTHING_YET;
     assert_int_equal(ilsa_get_mesh_def(a, &mesh), ILSA_OK);
     compare_fields(&mesh, a, b, u, turn, &d);
     if (!(d.width < INFINITY))
@@ -160,10 +159,10 @@ shown_difference shown_compare(ilsa_solver *a, ilsa_solver *b, shown_units u, in
 }
 
 shown_difference shown_worse(shown_difference a, shown_difference b) {
-    return (shown_difference){larger(a.width, b.width), larger(a.pressure, b.pressure),
-                              larger(a.front, b.front), larger(a.time, b.time)};
+    return (shown_difference){worst_of(a.width, b.width), worst_of(a.pressure, b.pressure),
+                              worst_of(a.front, b.front), worst_of(a.time, b.time)};
 }
 
 double shown_largest(shown_difference d) {
-    return larger(larger(d.width, d.pressure), larger(d.front, d.time));
+    return worst_of(worst_of(d.width, d.pressure), worst_of(d.front, d.time));
 }

@@ -5,6 +5,7 @@
 #ifndef TESTS_SHOWN_H
 #define TESTS_SHOWN_H
 
+#include "check.h"
 #include "host.h"
 
 /* A scene with the penny it begins with. */
@@ -49,6 +50,9 @@ int shown_turned_cell(const ilsa_mesh_def *mesh, int turn, int cell);
 typedef struct shown_difference {
     double width, pressure, front, time;
 } shown_difference;
+
+/* That of no states. */
+#define SHOWN_NOTHING_YET ((shown_difference){NOTHING_YET, NOTHING_YET, NOTHING_YET, NOTHING_YET})
 
 /* Of b, which was made in the units u and by the turn, to a. */
 shown_difference shown_compare(ilsa_solver *a, ilsa_solver *b, shown_units u, int turn);

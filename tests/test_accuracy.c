@@ -7,19 +7,19 @@
  */
 #include "../bench/common_layers.h"
 #include "../bench/common_radial.h"
+#include "check.h"
 #include "host.h"
-#include "numbers.h"
 #include "step/solver.h"
 
 #include <stdio.h>
 
 /* The worst of several errors, absolute. */
 static void keep(penny *worst, const penny *error) {
-    worst->R = larger(worst->R, fabs(error->R));
-    worst->efficiency = larger(worst->efficiency, fabs(error->efficiency));
-    worst->width = larger(worst->width, fabs(error->width));
-    worst->width_half = larger(worst->width_half, fabs(error->width_half));
-    worst->pressure_half = larger(worst->pressure_half, fabs(error->pressure_half));
+    worst->R = worst_of(worst->R, fabs(error->R));
+    worst->efficiency = worst_of(worst->efficiency, fabs(error->efficiency));
+    worst->width = worst_of(worst->width, fabs(error->width));
+    worst->width_half = worst_of(worst->width_half, fabs(error->width_half));
+    worst->pressure_half = worst_of(worst->pressure_half, fabs(error->pressure_half));
 }
 
 /* ---- Fig. 7 ------------------------------------------------------------------------------- */
@@ -30,7 +30,11 @@ static void follow(double phi, int first_decade, int last_decade) {
     const penny_law law = radial_law(phi);
     double R[TIMES_MOST];
     int count = 0;
-    penny worst = {0};
+    penny worst = {.R = NOTHING_YET,
+                   .efficiency = NOTHING_YET,
+                   .width = NOTHING_YET,
+                   .width_half = NOTHING_YET,
+                   .pressure_half = NOTHING_YET};
     ilsa_solver *solver = radial_start_at(law, pow(10, first_decade - 0.5), 20);
     assert_non_null(solver);
     for (int k = 4 * first_decade; k <= 4 * last_decade; k++) {
@@ -99,7 +103,8 @@ static void meshes(void **unused) {
             const radial_growth g = grow(&penny_cases[k], at[i].cells, 1, 0);
             assert_below(error_R(&g), at[i].R);
             assert_below(fabs(g.state.efficiency - g.reference.efficiency), 0.01);
-            assert_below(g.roundness, at[i].roundness);
+            if (isfinite(at[i].roundness))
+                assert_below(g.roundness, at[i].roundness);
         }
 }
 

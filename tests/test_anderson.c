@@ -1,24 +1,13 @@
 /* Anderson acceleration on fixed points that are known. */
+#include "check.h"
 #include "failing.h"
 #include "solve/anderson.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 enum { SIZE_MAX_TESTED = 400, DEPTH_MAX = 10 };
-
-/* Deterministic numbers in -1 .. 1. */
-static double next_random(uint64_t *seed) {
-    *seed = *seed * 6364136223846793005u + 1442695040888963407u;
-    return (double)(*seed >> 11) * 0x1p-52 - 1;
-}
 
 static anderson *make(int depth, int n) {
     anderson *a = ilsai_anderson_create(depth);
@@ -61,10 +50,9 @@ static void apply(const linear_map *m, const double *x, double *g) {
 }
 
 static double distance(const linear_map *m, const double *x) {
-    double worst = 0;
+    double worst = NOTHING_YET;
     for (int i = 0; i < m->n; i++) {
-        double error = fabs(x[i] - m->truth[i]);
-        worst = error <= worst ? worst : error;
+        worst = worst_of(worst, fabs(x[i] - m->truth[i]));
     }
     return worst;
 }
@@ -84,19 +72,19 @@ static double after_steps(const linear_map *m, int depth, int steps) {
 /* n + 1 evaluations span the space: the combination of no residual is the solution. */
 static void linear_fixed_point_in_n_plus_1_steps(void **state) {
     (void)state;
-    double worst = 0, plain = INFINITY;
+    double worst = NOTHING_YET, plain = INFINITY;
     for (int n = 1; n <= 8; n++) {
         for (uint64_t seed = 1; seed <= 20; seed++) {
             linear_map m = make_map(n, 0.9, seed);
-            worst = fmax(worst, after_steps(&m, n, n + 1));
-            worst = fmax(worst, after_steps(&m, DEPTH_MAX, n + 1));
-            plain = n > 1 ? fmin(plain, after_steps(&m, n, n)) : plain;
+            worst = worst_of(worst, after_steps(&m, n, n + 1));
+            worst = worst_of(worst, after_steps(&m, DEPTH_MAX, n + 1));
+            plain = n > 1 ? smaller_of(plain, after_steps(&m, n, n)) : plain;
         }
     }
     print_message("linear, n <= 8: worst error %.2g after n + 1 steps, best %.2g after n\n", worst,
                   plain);
-    assert_true(worst < 1e-9);
-    assert_true(plain > 1e-8); /* one step less is not enough: the solution was not known before */
+    assert_below(worst, 1e-9);
+    assert_above(plain, 1e-8); /* one step less is not enough: the solution was not known before */
 }
 
 /* The plain iteration turns and grows by a quarter each time. */
@@ -256,11 +244,11 @@ static int evaluations(int depth, int n, double stiffness) {
     anderson *a = make(depth, n);
     int count = 0;
     while (!(change < 1e-12) && count < 2000) {
-        change = 0;
+        change = NOTHING_YET;
         for (int k = 0; k < n; k++) {
             double left = x[k > 0 ? k - 1 : 0], right = x[k < n - 1 ? k + 1 : n - 1];
             g[k] = (1 - stiffness) * cos(x[k] + 0.5 * k / n) + stiffness * 0.5 * (left + right);
-            change = fmax(change, fabs(g[k] - x[k]));
+            change = worst_of(change, fabs(g[k] - x[k]));
         }
         ilsai_anderson_next(a, g, x);
         count++;
@@ -296,7 +284,7 @@ static void one_handle_serves_many_sizes(void **state) {
     assert_non_null(a);
     for (size_t s = 0; s < sizeof sizes / sizeof *sizes; s++) {
         int n = sizes[s];
-        double x[SIZE_MAX_TESTED] = {0}, g[SIZE_MAX_TESTED], worst = 0;
+        double x[SIZE_MAX_TESTED] = {0}, g[SIZE_MAX_TESTED], worst = NOTHING_YET;
         assert_int_equal(ilsai_anderson_begin(a, n), ILSA_OK);
         for (int step = 0; step < 60; step++) {
             for (int k = 0; k < n; k++) {
@@ -305,9 +293,9 @@ static void one_handle_serves_many_sizes(void **state) {
             ilsai_anderson_next(a, g, x);
         }
         for (int k = 0; k < n; k++) {
-            worst = fmax(worst, fabs(x[k] - 1));
+            worst = worst_of(worst, fabs(x[k] - 1));
         }
-        assert_true(worst < 1e-12);
+        assert_below(worst, 1e-12);
     }
     ilsai_anderson_destroy(&a);
     assert_null(a);

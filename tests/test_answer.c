@@ -2,7 +2,7 @@
  * Same answer: run again, with more threads, and by other ways to the same solution. What compilers
  * and options change is compared by tests/same_answer.sh.
  */
-#include "numbers.h"
+#include "check.h"
 #include "shown.h"
 
 enum { CELLS = 11, STEPS = 12, STEPS_LONG = 40 };
@@ -58,7 +58,7 @@ static void threads_give_the_same_bits(void **state) {
 /* Worst difference at any step, both with the smallest sensible tolerance. */
 static void check_close(shown first, shown second, const char *how) {
     const shown_units units = {1, 1, 1};
-    shown_difference worst = {0};
+    shown_difference worst = SHOWN_NOTHING_YET;
     first.scene.options.tolerance = second.scene.options.tolerance = 1e-11;
     ilsa_solver *a = host_started(&first.scene, first.radius);
     ilsa_solver *b = host_started(&second.scene, second.radius);

@@ -1,17 +1,12 @@
 /* Closure: what a host sees of cells whose faces touch, after shut-in and under stress that rises.
  */
+#include "check.h"
 #include "elastic/elasticity.h"
 #include "host.h"
-#include "numbers.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 /* A penny of phi that has grown a little and is shut in. */
 static ilsa_solver *shut_in(const host_scene *scene, double radius) {
@@ -202,7 +197,7 @@ static void closed_faces_press_on_each_other(void **state) {
             continue;
         }
         double stress = closure_stress(solver, &scene, cell), p = host_pressure(solver)[cell];
-        largest = fmax(largest, fabs(stress));
+        largest = larger_of(largest, fabs(stress));
         if (host_width(solver)[cell] > 1.001 * closure) {
             open++;
             assert_true(fabs(p - stress) < 1e-3 * largest);
@@ -225,17 +220,17 @@ static void closing_is_symmetric(void **state) {
     close_to(solver, 0.3);
     int n = scene.mesh.nx;
     const double *width = host_width(solver);
-    double worst = 0;
+    double worst = NOTHING_YET;
     for (int j = 0; j < n; j++) {
         for (int i = 0; i < n; i++) {
             double w = width[j * n + i], largest = host_summary(solver).width_source;
-            worst = fmax(worst, fabs(width[j * n + n - 1 - i] - w) / largest);
-            worst = fmax(worst, fabs(width[(n - 1 - j) * n + i] - w) / largest);
-            worst = fmax(worst, fabs(width[i * n + j] - w) / largest);
+            worst = worst_of(worst, fabs(width[j * n + n - 1 - i] - w) / largest);
+            worst = worst_of(worst, fabs(width[(n - 1 - j) * n + i] - w) / largest);
+            worst = worst_of(worst, fabs(width[i * n + j] - w) / largest);
         }
     }
     print_message("contact: octants differ by %.2g of the width\n", worst);
-    assert_true(worst < 1e-4);
+    assert_below(worst, 1e-4);
     ilsa_solver_destroy(&solver);
 }
 

@@ -3,8 +3,8 @@
  * $ILSA_LONG; and, for each fault that the map has shown, what a user would have seen.
  */
 #include "../bench/common_extremes.h"
+#include "check.h"
 #include "host.h"
-#include "numbers.h"
 
 #include <string.h>
 

@@ -1,16 +1,11 @@
 /* GMRES on matrices small enough to know the answer. */
+#include "check.h"
 #include "failing.h"
 #include "solve/gmres.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 /* A dense matrix by rows, a diagonal preconditioner, a count of products. */
 typedef struct dense {
@@ -36,11 +31,6 @@ static void divide_by_diagonal(void *context, const double *x, double *y) {
     const dense *d = context;
     for (size_t i = 0; i < d->n; i++)
         y[i] = x[i] / d->diagonal[i];
-}
-
-static double next_random(uint64_t *seed) {
-    *seed = *seed * 6364136223846793005u + 1442695040888963407u;
-    return (double)(*seed >> 11) * 0x1p-52 - 1;
 }
 
 /* Random entries over a diagonal that grows from 1 to `spread`. */

@@ -1,14 +1,9 @@
 /* The folded mesh: representatives, images and neighbours agree with mirrored coordinates. */
 #include "base/grid.h"
+#include "check.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 enum { LEAST = 3, MOST = 8, MESHES = (MOST - LEAST + 1) * (MOST - LEAST + 1) * 4 };
 

@@ -1,5 +1,6 @@
 /* Mesh, material, stress, status, version: every branch of every function, bad input first. */
 #include "base/error.h"
+#include "check.h"
 #include "failing.h"
 #include "model/material.h"
 #include "model/mesh.h"
@@ -9,15 +10,9 @@
 #include <limits.h>
 #include <math.h>
 #include <pthread.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static const double bad[] = {NAN, INFINITY, -INFINITY};
 
@@ -516,11 +511,14 @@ static void coarse_cells_are_means_of_old_ones(void **state) {
             fill(stress, &def, old);
             assert_int_equal(ilsai_stress_coarsen(stress), ILSA_OK);
             fill(stress, &twice, new);
+            double worst = NOTHING_YET;
             for (int j = 0; j < ny; j++)
                 for (int i = 0; i < nx; i++) {
                     double mean = covered_mean(old, nx, ny, i, j);
-                    assert_true(isnan(mean) || fabs(new[j * nx + i] - mean) < 1e-12);
+                    if (!isnan(mean)) /* NaN: not all of the cell is covered */
+                        worst = worst_of(worst, fabs(new[j * nx + i] - mean));
                 }
+            assert_below(worst, 1e-12);
             assert_true(new[0] == 0); /* the nearest old cell is the corner, or alone in it */
             assert_true(new[nx * ny - 1] == nx *ny - 1 || nx == 4 || ny == 4);
             ilsa_stress_destroy(&stress);

@@ -2,7 +2,7 @@
  * Invariance: a scene mirrored, rotated by 90 degrees or with x and y exchanged is the same
  * fracture, turned; and a radial one keeps its eight octants.
  */
-#include "numbers.h"
+#include "check.h"
 #include "shown.h"
 
 #include <stdlib.h>
@@ -28,7 +28,7 @@ static void report(const char *name, const char *how, shown_difference d, double
 /* Worst difference at any step to the same scene turned; coarsened before one of the steps. */
 static shown_difference turned_apart(const shown *s, int turn, int steps, int coarsened) {
     double *cells;
-    shown_difference worst = {0};
+    shown_difference worst = SHOWN_NOTHING_YET;
     const shown t = shown_turned(s, turn, &cells);
     ilsa_solver *first = host_started(&s->scene, s->radius);
     ilsa_solver *second = host_started(&t.scene, s->radius);
@@ -49,7 +49,7 @@ static shown_difference turned_apart(const shown *s, int turn, int steps, int co
 
 /* A mirror, x and y exchanged, and both with the other mirror; in check-long every turn. */
 static void check_turns(const shown *s, const char *how, int steps, int coarsened) {
-    shown_difference worst = {0};
+    shown_difference worst = SHOWN_NOTHING_YET;
     for (int turn = 1; turn < SHOWN_TURNS; turn += host_long() ? 1 : 3)
         worst = shown_worse(worst, turned_apart(s, turn, steps, coarsened));
     report(s->name, how, worst, 1e-9);
@@ -135,7 +135,7 @@ static void layers_may_be_upside_down(void **state) {
     for (int which = 3; which < SHOWN_LAYERED; which += host_long() ? 1 : 3) {
         const shown s = shown_scene(which, CELLS);
         shown t = s;
-        shown_difference worst = {0};
+        shown_difference worst = SHOWN_NOTHING_YET;
         t.scene.sigma[0] = s.scene.sigma[2];
         t.scene.sigma[2] = s.scene.sigma[0];
         ilsa_solver *up = host_started(&s.scene, s.radius);
@@ -156,7 +156,7 @@ static void layers_may_be_upside_down(void **state) {
 
 /* How far a fracture is from itself in any turn: the worst of its whole growth. */
 static shown_difference octants_apart(const shown *s) {
-    shown_difference worst = {0};
+    shown_difference worst = SHOWN_NOTHING_YET;
     ilsa_solver *solver = host_started(&s->scene, s->radius);
     while (host_summary(solver).time < s->end) {
         step(solver, s->end);
@@ -173,7 +173,7 @@ static void radial_fractures_keep_their_octants(void **state) {
     static const char *how[] = {", a quarter", ", whole"};
     for (int which = SHOWN_LAYERED; which < SHOWN_SCENES; which += host_long() ? 1 : 3)
         for (int whole = 0; whole < 2; whole++) {
-            shown_difference worst = {0};
+            shown_difference worst = SHOWN_NOTHING_YET;
             for (int even = 0; even < 2; even++) {
                 shown s = shown_scene(which, CELLS);
                 s.scene.mesh.nx += even;
@@ -190,7 +190,7 @@ static void a_quarter_is_the_whole(void **state) {
     (void)state;
     for (int which = host_long() ? 0 : 5; which < SHOWN_SCENES; which += host_long() ? 1 : 5) {
         shown s = shown_scene(which, CELLS);
-        shown_difference worst = {0};
+        shown_difference worst = SHOWN_NOTHING_YET;
         s.scene.options.tolerance = 1e-11;
         ilsa_solver *part = host_started(&s.scene, s.radius);
         s.scene.options.symmetry = ILSA_SYMMETRY_NONE;

@@ -1,30 +1,14 @@
 /* The numbered cells and the lubrication operator on them, against Poiseuille's law. */
+#include "check.h"
 #include "failing.h"
 #include "flow/lubrication.h"
 #include <ilsa/solver.h>
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 static const double dt_over_mu = 0.37;
-
-/* A larger of two that a NaN always wins. */
-static double larger(double a, double b) {
-    return b <= a ? a : b;
-}
-
-/* Deterministic numbers in -1 .. 1. */
-static double next_random(uint64_t *seed) {
-    *seed = *seed * 6364136223846793005u + 1442695040888963407u;
-    return (double)(*seed >> 11) * 0x1p-52 - 1;
-}
 
 /* Fields over a mesh, its numbered cells and the operator on them. */
 typedef struct scene {
@@ -188,7 +172,7 @@ static void cells_of_the_last_list_are_forgotten(void **state) {
 /* What one cell loses another gains, images counted. */
 static void volume_is_conserved(void **state) {
     (void)state;
-    double worst = 0;
+    double worst = NOTHING_YET;
     for (int n = 0; n < 16; n++) {
         for (uint64_t salt = 1; salt <= 10; salt++) {
             scene s = make_scene(24 + n / 4 % 2, 18 + n / 8, n % 2, n / 2 % 2);
@@ -200,12 +184,12 @@ static void volume_is_conserved(void **state) {
                 sum += weight(&s, cell) * s.source_term[cell];
                 size += weight(&s, cell) * fabs(s.source_term[cell]);
             }
-            worst = larger(worst, fabs(sum) / size);
+            worst = worst_of(worst, fabs(sum) / size);
             free_scene(&s);
         }
     }
     print_message("volume: worst sum of gains %.2g of what flows\n", worst);
-    assert_true(worst < 1e-15);
+    assert_below(worst, 1e-15);
 }
 
 /* Fluid flows down the pressure: the rate of work is never positive. */
@@ -361,7 +345,7 @@ static double difference(scene *s, int at, double *width, double h) {
 
 static void slope_is_the_derivative(void **state) {
     (void)state;
-    double worst = 0;
+    double worst = NOTHING_YET;
     scene s = make_scene(12, 10, 0, 0);
     fill(&s, 0, 13);
     work_out(&s);
@@ -371,12 +355,12 @@ static void slope_is_the_derivative(void **state) {
         }
         double slope = s.f.slope[at];
         int here = s.a.cell[at / GRID_FACES], there = s.a.cell[s.a.neighbour[at]];
-        worst = larger(worst, fabs(difference(&s, at, &s.width[here], 0.05) - slope));
-        worst = larger(worst, fabs(difference(&s, at, &s.width[there], 0.05) - slope));
+        worst = worst_of(worst, fabs(difference(&s, at, &s.width[here], 0.05) - slope));
+        worst = worst_of(worst, fabs(difference(&s, at, &s.width[there], 0.05) - slope));
         face_gain(&s, at);
     }
     print_message("slope: worst difference to finite differences %.2g\n", worst);
-    assert_true(worst < 1e-12);
+    assert_below(worst, 1e-12);
     free_scene(&s);
 }
 

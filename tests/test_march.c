@@ -1,31 +1,15 @@
 /* Fast marching: against planes, circles, the discrete equation itself and the unfolded march. */
+#include "check.h"
 #include "failing.h"
 #include "front/march.h"
 #include <ilsa/solver.h>
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 static const double pi = 3.14159265358979323846;
 static const double untouched = -1234.5;
-
-/* A larger of two that a NaN always wins. */
-static double larger(double a, double b) {
-    return b <= a ? a : b;
-}
-
-/* Deterministic numbers in -1 .. 1. */
-static double next_random(uint64_t *survey) {
-    *survey = *survey * 6364136223846793005u + 1442695040888963407u;
-    return (double)(*survey >> 11) * 0x1p-52 - 1;
-}
 
 /* A mesh, the survey_cells on it and what one march makes of them. */
 typedef struct scene {
@@ -126,16 +110,16 @@ static double worst_of_plane(double angle, double dx, double dy) {
     scene s = plane_scene(angle, dx, dy);
     int count;
     const front_cell *c = march_all(&s, INFINITY, &count);
-    double cos_a = cos(angle), sin_a = sin(angle), worst = 0;
+    double cos_a = cos(angle), sin_a = sin(angle), worst = NOTHING_YET;
     assert_int_equal(count, cell_count(&s) - s.survey_count);
     for (int k = 0; k < count; k++) {
         double x = x_of(&s, c[k].cell), y = y_of(&s, c[k].cell);
         double T = cos_a * x + sin_a * y - 10 * (dx + dy);
         /* the corner furthest behind the march */
         double corner = T - 0.5 * dx * fabs(cos_a) - 0.5 * dy * fabs(sin_a);
-        worst = larger(worst, fabs(c[k].T - T) / (dx + dy));
-        worst = larger(worst, fabs(c[k].ell + corner) / (dx + dy));
-        worst = larger(worst, fabs(c[k].V / 3 - 1));
+        worst = worst_of(worst, fabs(c[k].T - T) / (dx + dy));
+        worst = worst_of(worst, fabs(c[k].ell + corner) / (dx + dy));
+        worst = worst_of(worst, fabs(c[k].V / 3 - 1));
         assert_true(hypot(c[k].cos_a - fabs(cos_a), c[k].sin_a - fabs(sin_a)) < 1e-10);
         assert_true(s.level[c[k].cell] == c[k].T);
     }
@@ -147,16 +131,16 @@ static double worst_of_plane(double angle, double dx, double dy) {
 static void planes_are_exact(void **state) {
     (void)state;
     static const double cell[][2] = {{1, 1}, {0.3, 0.7}, {4, 1}, {1e-3, 2e-3}};
-    double worst = 0;
+    double worst = NOTHING_YET;
     for (size_t m = 0; m < sizeof cell / sizeof *cell; m++) {
         for (int degrees = 1; degrees < 360; degrees++) {
             if (degrees % 90 != 0) {
-                worst = larger(worst, worst_of_plane(degrees * pi / 180, cell[m][0], cell[m][1]));
+                worst = worst_of(worst, worst_of_plane(degrees * pi / 180, cell[m][0], cell[m][1]));
             }
         }
     }
     print_message("planes: worst error %.2g of T, ell and V, in cells\n", worst);
-    assert_true(worst < 1e-12);
+    assert_below(worst, 1e-12);
 }
 
 /* A front along an axis: from one side alone, cell by cell. */
@@ -302,7 +286,7 @@ static circle_errors circle_errors_at(int n, double aspect, double curvature) {
     circle c = {0.013, -0.007, 1};
     double dx = 1.0 / n, dy = dx / aspect;
     scene s = make_scene(2 * n + 12, 2 * (int)(n * aspect) + 13, dx, dy);
-    circle_errors worst = {0, 0, 0};
+    circle_errors worst = {NOTHING_YET, NOTHING_YET, NOTHING_YET};
     int count;
     fill_circle(&s, &c, curvature);
     const front_cell *cell = march_all(&s, 2 * hypot(dx, dy), &count);
@@ -312,9 +296,9 @@ static circle_errors circle_errors_at(int n, double aspect, double curvature) {
         if (corner < 0) {
             double angle = atan2(fabs(y - c.y), fabs(x - c.x));
             double error = atan2(cell[k].sin_a, cell[k].cos_a) - angle;
-            worst.T = larger(worst.T, fabs(cell[k].T - circle_level(&c, x, y)));
-            worst.ell = larger(worst.ell, fabs(cell[k].ell + corner));
-            worst.angle = larger(worst.angle, fabs(error));
+            worst.T = worst_of(worst.T, fabs(cell[k].T - circle_level(&c, x, y)));
+            worst.ell = worst_of(worst.ell, fabs(cell[k].ell + corner));
+            worst.angle = worst_of(worst.angle, fabs(error));
         }
     }
     assert_true(count > n);
@@ -409,7 +393,7 @@ static double bisected(const scene *s, int i, int j) {
 
 /* Every reached cell answers to its final neighbours, no other cell would come within the limit. */
 static double worst_of_equation(const scene *s, double limit) {
-    double worst = 0, h = s->g.dx + s->g.dy;
+    double worst = NOTHING_YET, h = s->g.dx + s->g.dy;
     for (int cell = 0; cell < cell_count(s); cell++) {
         if (s->kind[cell] >= ILSA_CELL_SURVEY) {
             continue;
@@ -417,7 +401,7 @@ static double worst_of_equation(const scene *s, double limit) {
         double T = s->level[cell], truth = bisected(s, cell % s->g.nx, cell / s->g.nx);
         if (isfinite(T)) {
             assert_true(T <= limit);
-            worst = larger(worst, fabs(T - truth) / h);
+            worst = worst_of(worst, fabs(T - truth) / h);
         } else {
             assert_true(truth > limit - 1e-12 * h);
         }
@@ -428,17 +412,17 @@ static double worst_of_equation(const scene *s, double limit) {
 static void every_cell_answers_to_its_neighbours(void **state) {
     (void)state;
     static const double aspect[] = {1, 0.3, 4};
-    double worst = 0;
+    double worst = NOTHING_YET;
     for (uint64_t n = 0; n < 60; n++) {
         double dy = aspect[n % 3], limit = n % 2 ? INFINITY : 4.0 * (double)(n % 5);
         scene s = ragged_scene(31, 26, 1, dy, n + 1);
         int count;
         march_all(&s, limit, &count);
-        worst = larger(worst, worst_of_equation(&s, limit));
+        worst = worst_of(worst, worst_of_equation(&s, limit));
         free_scene(&s);
     }
     print_message("discrete eikonal equation: worst difference to bisection %.2g cells\n", worst);
-    assert_true(worst < 1e-11);
+    assert_below(worst, 1e-11);
 }
 
 static void curve(scene *s, double curvature, uint64_t survey) {
@@ -476,7 +460,7 @@ static void cells_come_after_their_parents(void **state) {
 /* A front that hardly curves is hardly different from a straight one. */
 static void curvature_enters_smoothly(void **state) {
     (void)state;
-    double tiny = 1e-7, worst = 0;
+    double tiny = 1e-7, worst = NOTHING_YET;
     for (uint64_t n = 0; n < 10; n++) {
         scene s = ragged_scene(30, 30, 1, 0.7, n + 1), t = ragged_scene(30, 30, 1, 0.7, n + 1);
         int count, same;
@@ -486,13 +470,14 @@ static void curvature_enters_smoothly(void **state) {
         assert_int_equal(count, same);
         for (int cell = 0; cell < cell_count(&s); cell++) {
             double off = s.level[cell] - t.level[cell];
-            worst = s.level[cell] == untouched ? worst : larger(worst, fabs(off));
+            worst = s.level[cell] == untouched ? worst : worst_of(worst, fabs(off));
         }
         free_scene(&s);
         free_scene(&t);
     }
     print_message("curvature %g changes T by %.2g\n", tiny, worst);
-    assert_true(worst > 0 && worst < 30 * tiny);
+    assert_true(worst > 0);
+    assert_below(worst, 30 * tiny);
 }
 
 /* Normals have length one, and lie between the axes. */
@@ -649,7 +634,7 @@ static void uniform_velocity_stays_uniform(void **state) {
  * second order where the same parents keep their say. */
 static void velocity_is_the_change_of_distance(void **state) {
     (void)state;
-    double eps = 1e-6, worst = 0;
+    double eps = 1e-6, worst = NOTHING_YET;
     int compared = 0;
     for (uint64_t n = 0; n < 10; n++) {
         scene s = ragged_scene(30, 30, 1, 0.8, n + 100),
@@ -666,7 +651,7 @@ static void velocity_is_the_change_of_distance(void **state) {
         for (int k = 0; k < count; k++) {
             double V = (before.level[c[k].cell] - after.level[c[k].cell]) / (2 * eps);
             int axis = c[k].cos_a < 1e-3 || c[k].sin_a < 1e-3; /* where parents come and go */
-            worst = axis ? worst : larger(worst, fabs(V - c[k].V));
+            worst = axis ? worst : worst_of(worst, fabs(V - c[k].V));
             compared += !axis;
         }
         free_scene(&s);
@@ -675,7 +660,8 @@ static void velocity_is_the_change_of_distance(void **state) {
     }
     print_message("velocity: %d cells, worst difference to finite differences %.2g\n", compared,
                   worst);
-    assert_true(compared > 2000 && worst < 1e-4);
+    assert_true(compared > 2000);
+    assert_below(worst, 1e-4);
 }
 
 /* Each cell knows the survey_cells that its level comes from, and how much each: as many as it can
@@ -735,8 +721,8 @@ static void stress_intensity_is_a_mean(void **state) {
         int count;
         for (int k = 0; k < s.survey_count; k++) {
             double K = s.survey_cells[k].w / sqrt(s.survey_cells[k].s);
-            low = fmin(low, K);
-            high = fmax(high, K);
+            low = smaller_of(low, K);
+            high = larger_of(high, K);
         }
         const front_cell *c = march_all(&s, INFINITY, &count);
         for (int k = 0; k < count; k++) {
@@ -791,9 +777,9 @@ static scene mirrored_scene(int nx, int ny, int mirror_x, int mirror_y, int fold
 
 /* Of place, normal and velocity. */
 static double difference(const front_cell *a, const front_cell *b) {
-    double worst = larger(fabs(a->T - b->T), fabs(a->ell - b->ell));
-    worst = larger(worst, fabs(a->V - b->V));
-    return larger(worst, larger(fabs(a->cos_a - b->cos_a), fabs(a->sin_a - b->sin_a)));
+    double worst = worst_of(fabs(a->T - b->T), fabs(a->ell - b->ell));
+    worst = worst_of(worst, fabs(a->V - b->V));
+    return worst_of(worst, worst_of(fabs(a->cos_a - b->cos_a), fabs(a->sin_a - b->sin_a)));
 }
 
 static double stress_intensity_difference(const front_cell *a, const front_cell *b) {
@@ -810,12 +796,12 @@ static double fold_difference(comparison *compare, double curvature, int nx, int
     scene part = mirrored_scene(nx, ny, mirror_x, mirror_y, 1, salt, curvature);
     march_all(&all, 5, &count);
     const front_cell *c = march_all(&part, 5, &folded_count);
-    double worst = 0;
+    double worst = NOTHING_YET;
     for (int k = 0; k < folded_count; k++) {
         int images = ilsai_grid_images(&part.g, c[k].cell % nx, c[k].cell / nx, image);
         stood_for += images;
         for (int m = 0; m < images; m++) {
-            worst = larger(worst, compare(&c[k], reached(&all, image[m])));
+            worst = worst_of(worst, compare(&c[k], reached(&all, image[m])));
         }
     }
     assert_int_equal(stood_for, count);
@@ -827,12 +813,12 @@ static double fold_difference(comparison *compare, double curvature, int nx, int
 /* Even and odd counts, each mirror and both. */
 static double worst_fold_difference(comparison *compare, double curvature) {
     static const int size[][2] = {{31, 29}, {30, 28}, {31, 28}, {30, 29}};
-    double worst = 0;
+    double worst = NOTHING_YET;
     for (int n = 0; n < 4; n++) {
         for (int mirror = 1; mirror < 4; mirror++) {
             for (uint64_t salt = 1; salt <= 10; salt++) {
-                worst = larger(worst, fold_difference(compare, curvature, size[n][0], size[n][1],
-                                                      mirror, 97 * salt));
+                worst = worst_of(worst, fold_difference(compare, curvature, size[n][0], size[n][1],
+                                                        mirror, 97 * salt));
             }
         }
     }
@@ -843,7 +829,7 @@ static void folded_march_is_the_unfolded_one(void **state) {
     (void)state;
     double worst = worst_fold_difference(difference, 0);
     print_message("folded against unfolded: worst difference %.2g\n", worst);
-    assert_true(worst < 1e-12);
+    assert_below(worst, 1e-12);
 }
 
 /* A cell beside the axis and its mirror image have the same level: to the one that comes second
@@ -852,14 +838,14 @@ static void folded_march_with_curvature_is_the_unfolded_one(void **state) {
     (void)state;
     double worst = worst_fold_difference(difference, 0.3);
     print_message("folded against unfolded: with curvature off by %.2g\n", worst);
-    assert_true(worst < 1e-12);
+    assert_below(worst, 1e-12);
 }
 
 static void folded_stress_intensity_is_the_unfolded_one(void **state) {
     (void)state;
     double worst = worst_fold_difference(stress_intensity_difference, 0);
     print_message("folded against unfolded: stress intensity off by %.2g\n", worst);
-    assert_true(worst < 1e-12);
+    assert_below(worst, 1e-12);
 }
 
 /* The handle */

@@ -3,23 +3,18 @@
  * message, nothing changed, and the same bits as ever when the call is made again. That nothing
  * leaks is seen under AddressSanitizer and valgrind.
  */
+#include "check.h"
 #include "elastic/elasticity.h"
 #include "failing.h"
 #include "host.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 /* ---- Scenes ------------------------------------------------------------------------------------
  */

@@ -2,19 +2,14 @@
  * The two halves of the preconditioner: one multigrid cycle for flow with springs, and widths from
  * the near field of the elasticity.
  */
+#include "check.h"
 #include "elastic/elasticity.h"
 #include "solve/multigrid.h"
 #include "solve/near_field.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 /* ---- Flow -------------------------------------------------------------------------------------
  */
@@ -147,7 +142,7 @@ static double near_error(int nx, int ny, double aspect, int mirror) {
     f.above = ilsai_kernel(0, 1, 1, aspect);
     f.corner = ilsai_kernel(1, 1, 1, aspect);
     size_t stride = (size_t)f.stride, size = stride * ((size_t)ny + 2);
-    double *x = calloc(size, sizeof *x), error = 0, most = 0;
+    double *x = calloc(size, sizeof *x), error = NOTHING_YET, most = 0;
     assert_non_null(x);
     for (int j = 0; j < ny; j++)
         for (int i = 0; i < nx; i++) {
@@ -173,8 +168,8 @@ static double near_error(int nx, int ny, double aspect, int mirror) {
     for (int j = 0; j < ny; j++)
         for (int i = 0; i < nx; i++) {
             size_t at = (size_t)(j + 1) * stride + (size_t)i + 1;
-            error = fmax(error, fabs(f.x[at] - x[at]));
-            most = fmax(most, x[at]);
+            error = worst_of(error, fabs(f.x[at] - x[at]));
+            most = larger_of(most, x[at]);
             assert_true(f.open[at] > 0 || f.x[at] == 0);
         }
     free(x);
@@ -189,9 +184,9 @@ static void near_field_gives_widths_back(void **state) {
         for (int mirror = -1; mirror <= 1; mirror++) {
             double error = near_error(30, 23, aspect[k], mirror);
             print_message("dy/dx = %g, images %d: widths to %.3f\n", aspect[k], mirror, error);
-            assert_true(error < (aspect[k] == 1 ? 0.1 : 0.5));
+            assert_below(error, aspect[k] == 1 ? 0.1 : 0.5);
         }
-    assert_true(near_error(1, 1, 1, -1) < 0.2);
+    assert_below(near_error(1, 1, 1, -1), 0.2);
 }
 
 int main(void) {

@@ -1,27 +1,12 @@
 /* The penny-shaped fracture that a run starts from, against reference solutions and vertices. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <string.h>
-
-#include <cmocka.h>
-
+#include "check.h"
 #include "csv.h"
 #include "tip/penny.h"
 
+#include <math.h>
+#include <string.h>
+
 #define PI 3.14159265358979323846
-
-static double relative(double value, double reference) {
-    return fabs(value / reference - 1.0);
-}
-
-static void keep_worst(double *worst, double error) {
-    if (!(error <= *worst)) {
-        *worst = error;
-    }
-}
 
 static ilsa_material_def law(double mu_prime, double K_prime, double C_prime) {
     return (ilsa_material_def){
@@ -64,29 +49,32 @@ static double leaked(const penny_solution *solution, double rho) {
 static void test_history(void **state) {
     (void)state;
     csv_table *table = csv_read("tests/data/radial_history.csv");
-    double R = 0, efficiency = 0, V = 0, alpha = 0, center = 0, middle = 0, pressure = 0;
+    double R = NOTHING_YET, efficiency = NOTHING_YET, V = NOTHING_YET, alpha = NOTHING_YET,
+           center = NOTHING_YET, middle = NOTHING_YET, pressure = NOTHING_YET;
     for (size_t i = 0; i < csv_rows(table); i++) {
         penny_solution s = at_phi_tau(csv_get(table, i, "phi"), csv_get(table, i, "tau"));
-        keep_worst(&R, relative(s.R, csv_get(table, i, "R")));
-        keep_worst(&efficiency, fabs(s.efficiency - csv_get(table, i, "efficiency")));
-        keep_worst(&V, relative(s.V, csv_get(table, i, "V")));
-        keep_worst(&alpha, fabs(s.alpha - csv_get(table, i, "alpha_dlnR_dlnt")));
-        keep_worst(&center, relative(ilsai_penny_width(&s, 0), csv_get(table, i, "w_center")));
-        keep_worst(&middle, relative(ilsai_penny_width(&s, 0.5), csv_get(table, i, "w_rho0p5")));
-        keep_worst(&pressure,
-                   relative(ilsai_penny_pressure(&s, 0.5), csv_get(table, i, "p_rho0p5")));
+        R = worst_of(R, relative(s.R, csv_get(table, i, "R")));
+        efficiency = worst_of(efficiency, fabs(s.efficiency - csv_get(table, i, "efficiency")));
+        V = worst_of(V, relative(s.V, csv_get(table, i, "V")));
+        alpha = worst_of(alpha, fabs(s.alpha - csv_get(table, i, "alpha_dlnR_dlnt")));
+        center =
+            worst_of(center, relative(ilsai_penny_width(&s, 0), csv_get(table, i, "w_center")));
+        middle =
+            worst_of(middle, relative(ilsai_penny_width(&s, 0.5), csv_get(table, i, "w_rho0p5")));
+        pressure = worst_of(pressure,
+                            relative(ilsai_penny_pressure(&s, 0.5), csv_get(table, i, "p_rho0p5")));
     }
     csv_free(table);
     print_message("history: R %.1e, efficiency %.1e, V %.1e, alpha %.1e, w(0) %.1e, w(0.5) %.1e, "
                   "p(0.5) %.1e\n",
                   R, efficiency, V, alpha, center, middle, pressure);
-    assert_true(R < 3e-4);
-    assert_true(efficiency < 2e-4);
-    assert_true(V < 4e-3);
-    assert_true(alpha < 1e-3);
-    assert_true(center < 5e-4);
-    assert_true(middle < 6e-4);
-    assert_true(pressure < 1e-3);
+    assert_below(R, 3e-4);
+    assert_below(efficiency, 2e-4);
+    assert_below(V, 4e-3);
+    assert_below(alpha, 1e-3);
+    assert_below(center, 5e-4);
+    assert_below(middle, 6e-4);
+    assert_below(pressure, 1e-3);
 }
 
 /* The pressure passes through zero near the tip: its error is measured by the one at rho = 0.5. */
@@ -94,7 +82,8 @@ static void test_profiles(void **state) {
     (void)state;
     csv_table *table = csv_read("tests/data/radial_profiles.csv");
     penny_solution s = {0};
-    double inside = 0, rim = 0, pressure = 0, rim_pressure = 0;
+    double inside = NOTHING_YET, rim = NOTHING_YET;
+    double pressure = NOTHING_YET, rim_pressure = NOTHING_YET;
     for (size_t i = 0; i < csv_rows(table); i++) {
         double rho = csv_get(table, i, "rho");
         if (i == 0 || rho < csv_get(table, i - 1, "rho")) {
@@ -103,16 +92,18 @@ static void test_profiles(void **state) {
         double w = relative(ilsai_penny_width(&s, rho), csv_get(table, i, "Omega"));
         double p = fabs(ilsai_penny_pressure(&s, rho) - csv_get(table, i, "Pi")) /
                    ilsai_penny_pressure(&s, 0.5);
-        keep_worst(rho < 0.96 ? &inside : &rim, w);
-        keep_worst(rho < 0.96 ? &pressure : &rim_pressure, p);
+        double *width_error = rho < 0.96 ? &inside : &rim;
+        double *pressure_error = rho < 0.96 ? &pressure : &rim_pressure;
+        *width_error = worst_of(*width_error, w);
+        *pressure_error = worst_of(*pressure_error, p);
     }
     csv_free(table);
     print_message("profiles, rho <= 0.95: w %.1e, p %.1e; rho = 0.99, 0.999: w %.1e, p %.1e\n",
                   inside, pressure, rim, rim_pressure);
-    assert_true(inside < 1.2e-3);
-    assert_true(pressure < 1.5e-3);
-    assert_true(rim < 2.5e-3);
-    assert_true(rim_pressure < 1e-2);
+    assert_below(inside, 1.2e-3);
+    assert_below(pressure, 1.5e-3);
+    assert_below(rim, 2.5e-3);
+    assert_below(rim_pressure, 1e-2);
 }
 
 /* E' = Q = t = 1 with R, w and p in the scales of the vertex. */
@@ -120,23 +111,23 @@ static void check_vertex(const char *name, ilsa_material_def scaled, const doubl
                          double tolerance) {
     csv_table *table = csv_read("tests/data/radial_vertices.csv");
     penny_solution s = at_time(scaled, 1.0, 1.0);
-    double R = 0, w = 0, p = 0;
+    double R = NOTHING_YET, w = NOTHING_YET, p = NOTHING_YET;
     for (size_t i = 0; i < csv_rows(table); i++) {
         if (strcmp(csv_text(table, i, "vertex"), name) == 0) {
             double rho = csv_get(table, i, "rho");
-            keep_worst(&R, relative(s.R, csv_get(table, i, "gamma") * scale[0]));
-            keep_worst(&w,
-                       relative(ilsai_penny_width(&s, rho), csv_get(table, i, "Omega") * scale[1]));
-            keep_worst(&p,
-                       fabs(ilsai_penny_pressure(&s, rho) / scale[2] - csv_get(table, i, "Pi")));
+            R = worst_of(R, relative(s.R, csv_get(table, i, "gamma") * scale[0]));
+            w = worst_of(
+                w, relative(ilsai_penny_width(&s, rho), csv_get(table, i, "Omega") * scale[1]));
+            p = worst_of(p,
+                         fabs(ilsai_penny_pressure(&s, rho) / scale[2] - csv_get(table, i, "Pi")));
         }
     }
     csv_free(table);
     print_message("vertex %-2s: R %.1e, w %.1e, p %.1e, efficiency %.1e\n", name, R, w, p,
                   s.efficiency);
-    assert_true(R < tolerance);
-    assert_true(w < 1.5e-3 + tolerance);
-    assert_true(p < 5e-3 + tolerance);
+    assert_below(R, tolerance);
+    assert_below(w, 1.5e-3 + tolerance);
+    assert_below(p, 5e-3 + tolerance);
 }
 
 /* Leaving out a process is exact; for the others a parameter is taken to its end. */
@@ -154,14 +145,14 @@ static void test_vertices(void **state) {
 /* Far outside the table: found, ordered in time, never above the vertices, and inverted. */
 static void test_range(void **state) {
     (void)state;
-    double inverse = 0.0;
+    double inverse = NOTHING_YET;
     for (int k = -14; k <= 12; k += 2) {
         double phi = k < -12 ? 0.0 : pow(10.0, k), radius = 0.0, efficiency = 1.0 + 1e-8;
         for (int n = -9; n <= 9; n += 2) {
             double tau = pow(10.0, n);
             penny_solution s = at_phi_tau(phi, tau), back;
             assert_int_equal(ilsai_penny_at_radius(&s.scaled, s.Q, s.R, &back), ILSA_OK);
-            keep_worst(&inverse, relative(back.t, tau));
+            inverse = worst_of(inverse, relative(back.t, tau));
             assert_true(back.R == s.R);
             assert_true(s.R > radius);
             assert_true(s.efficiency > 0.0 && s.efficiency <= efficiency);
@@ -176,30 +167,30 @@ static void test_range(void **state) {
         }
     }
     print_message("tau 1e-9..1e9, phi 0..1e12: t from R within %.1e\n", inverse);
-    assert_true(inverse < 1e-8);
+    assert_below(inverse, 1e-8);
 }
 
 /* The profile holds the volume it says, and with what leaked it makes up what was injected. */
 static void test_volume(void **state) {
     (void)state;
     const double C[] = {0.0, 0.1, 1.0, 10.0}, K[] = {0.0, 1.0};
-    double profile = 0.0, balance = 0.0;
+    double profile = NOTHING_YET, balance = NOTHING_YET;
     for (int i = 0; i < 8; i++) {
         penny_solution s = at_time(law(1.0, K[i % 2], C[i / 2]), 2.0, 0.3);
         double volume = s.efficiency * s.Q * s.t;
-        keep_worst(&profile, relative(area_integral(ilsai_penny_width, &s), volume));
-        keep_worst(&balance, relative(volume + area_integral(leaked, &s), s.Q * s.t));
+        profile = worst_of(profile, relative(area_integral(ilsai_penny_width, &s), volume));
+        balance = worst_of(balance, relative(volume + area_integral(leaked, &s), s.Q * s.t));
     }
     print_message("volume: of the profile %.1e, balance with leak-off %.1e\n", profile, balance);
-    assert_true(profile < 1e-10);
-    assert_true(balance < 2e-4);
+    assert_below(profile, 1e-10);
+    assert_below(balance, 2e-4);
 }
 
 /* The front passed rho R when the fracture was that large. */
 static void test_arrival(void **state) {
     (void)state;
     const double C[] = {0.0, 0.1, 1.0, 10.0};
-    double worst = 0.0;
+    double worst = NOTHING_YET;
     for (int i = 0; i < 4; i++) {
         penny_solution s = at_time(law(1.0, 1.0, C[i]), 1.0, 5.0), earlier;
         double last = 0.0;
@@ -210,14 +201,14 @@ static void test_arrival(void **state) {
         }
         for (int k = 1; k < 10; k++) {
             ilsai_penny_at_radius(&s.scaled, s.Q, 0.1 * k * s.R, &earlier);
-            keep_worst(&worst, fabs(ilsai_penny_arrival(&s, 0.1 * k) - earlier.t) / s.t);
+            worst = worst_of(worst, fabs(ilsai_penny_arrival(&s, 0.1 * k) - earlier.t) / s.t);
         }
         assert_true(ilsai_penny_arrival(&s, 0.0) == 0.0);
         assert_true(ilsai_penny_arrival(&s, 1.0) == s.t);
         assert_true(ilsai_penny_arrival(&s, 1.5) == s.t);
     }
     print_message("arrival: %.1e of the time\n", worst);
-    assert_true(worst < 1e-3);
+    assert_below(worst, 1e-3);
 }
 
 /* The same fracture in centimetres, minutes and an odd unit of mass. */
@@ -232,18 +223,18 @@ static void test_units(void **state) {
     penny_solution a = at_time(si, 0.05, 900.0);
     penny_solution b = at_time(odd, 0.05 * length * length * length / time, 900.0 * time);
     double worst = relative(b.R, a.R * length);
-    keep_worst(&worst, relative(b.V, a.V * length / time));
-    keep_worst(&worst, relative(b.efficiency, a.efficiency));
+    worst = worst_of(worst, relative(b.V, a.V * length / time));
+    worst = worst_of(worst, relative(b.efficiency, a.efficiency));
     for (int k = 0; k < 10; k++) {
         double rho = 0.1 * k;
-        keep_worst(&worst,
-                   relative(ilsai_penny_width(&b, rho), ilsai_penny_width(&a, rho) * length));
-        keep_worst(&worst,
-                   relative(ilsai_penny_pressure(&b, rho), ilsai_penny_pressure(&a, rho) * stress));
+        worst = worst_of(worst,
+                         relative(ilsai_penny_width(&b, rho), ilsai_penny_width(&a, rho) * length));
+        worst = worst_of(
+            worst, relative(ilsai_penny_pressure(&b, rho), ilsai_penny_pressure(&a, rho) * stress));
     }
     print_message("units: %.1e; R %.4g m, efficiency %.3f, w %.3g m, p %.3g Pa\n", worst, a.R,
                   a.efficiency, ilsai_penny_width(&a, 0), ilsai_penny_pressure(&a, 0.5));
-    assert_true(worst < 1e-9);
+    assert_below(worst, 1e-9);
 }
 
 static void test_repeats(void **state) {

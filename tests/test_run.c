@@ -379,10 +379,13 @@ static void mesh_edge_is_told(void **state) {
     assert_int_equal(run_other("--out edge"), 1);
     assert_int_equal(strncmp(output, "ilsa-run: failed at t = ", 24), 0);
     assert_non_null(strstr(output, " of 600: "));
-    assert_non_null(strstr(output, "; give [mesh] more cells, or [run] coarsen = yes; what was "
-                                   "reached is in edge\n"));
-    static const char *const texts[] = {"ended                 failed at t = "};
-    assert_says("edge/summary.txt", texts, 1);
+    assert_non_null(strstr(output, "; what was reached is in edge\n"
+                                   "other.ini:9: [mesh] ny: the fracture has come to the edge of "
+                                   "the mesh, x -"));
+    assert_non_null(strstr(output, "; give more cells, or [run] coarsen = yes\n"));
+    static const char *const texts[] = {"ended                 failed at t = ",
+                                        "\n                      other.ini:9: [mesh] ny: "};
+    assert_says("edge/summary.txt", texts, 2);
     csv_table *h = csv_read(program_path("edge/history.csv"));
     assert_true(last(h, "extent_x_max") > 8);
     csv_free(h);
@@ -408,6 +411,87 @@ static void two_sources(void **state) {
     assert_near(last(h, "volume_injected"), injected, 1e-9 * injected);
     assert_true(last(h, "extent_x_max") > -last(h, "extent_x_min"));
     csv_free(h);
+}
+
+/* Which source, where it stands in the file and when, and not that there is no fracture. */
+static void source_outside_is_named(void **state) {
+    (void)state;
+    write_scene("[initial]\n", "[injection.2]\nrate = 0\n[injection.3]\n"
+                               "schedule = 0:0, 12:0.03\nx = 9\ny = -2\n[initial]\n");
+    assert_int_equal(run_other("--out off --quiet"), 1);
+    assert_string_equal(output, "ilsa-run: failed at t = 12 of 14: a source injects outside the "
+                                "fracture; what was reached is in off\n"
+                                "other.ini:18: injection.3 at (9, -2) is not in the fracture at "
+                                "time 12 s, when it injects 0.03\n");
+    static const char *const texts[] = {"\n                      other.ini:18: injection.3 at "};
+    assert_says("off/summary.txt", texts, 1);
+}
+
+/* Between barriers the footprint is too narrow for larger cells. A solver that copes runs on. */
+static void mesh_that_cannot_be_coarsened_is_told(void **state) {
+    (void)state;
+    write_scene("sigma = 7e6\n", "sigma = 12e6, 7e6, 12e6\ninterfaces = -2.5, 2.5\n");
+    assert_int_equal(program_run("sed -i -e 's/radius = 5/radius = 2.5/' -e 's/t_end = 14/t_end = "
+                                 "60/' -e 's/^output_times.*/coarsen = yes/' "
+                                 "-e 's/^schedule.*/rate = 0.01/' other.ini",
+                                 output, sizeof output),
+                     0);
+    int status = run_other("--out narrow --quiet");
+    const char *line = strstr(output, "\nother.ini:20: [run] coarsen = yes: the footprint is ");
+    if (!line) {
+        skip();
+        return;
+    }
+    assert_int_equal(status, 1);
+    assert_non_null(strstr(line, "; give [mesh] more cells, so that it need not be coarsened, or "
+                                 "smaller ones, so that it can be\n"));
+}
+
+/* Two lines. A solver that has learned to run this scene leaves nothing to say. */
+static void stall_is_placed(void **state) {
+    (void)state;
+    write_scene("E = 9.5e9\n", "E = 1e59\n");
+    int status = run_other("--out stalled --quiet");
+    const char *where = strstr(output, "\nwhere: t = ");
+    if (!where) {
+        skip();
+        return;
+    }
+    assert_int_equal(status, 1);
+    assert_non_null(strstr(where, " steps refused at the end, "));
+    assert_non_null(strstr(where, " cells closed; fracture x -"));
+    assert_non_null(strstr(where, " on cells of 1 x 1\ntry: other.ini:8: [mesh] nx = 51, ny = 47, "
+                                  "dx = 0.5, dy = 0.5: cells half as large\n"));
+}
+
+/* A log that mirrors itself is solved as a quarter; as fine layers it stays on larger cells. */
+static void stress_log_stays_when_coarsened(void **state) {
+    (void)state;
+    static const char *const texts[] = {
+        "\nstress                log.csv: 5 rows, y -40 .. 40; beyond, the end values\n",
+        "solved                one quarter"};
+    write_scene("sigma = 7e6\n", "profile = log.csv\n");
+    assert_int_equal(program_run("sed -i -e 's/^t_end.*/t_end = 120/' "
+                                 "-e 's/^output_times.*/coarsen = yes/' other.ini",
+                                 output, sizeof output),
+                     0);
+    program_write("log.csv", "y (m), sigma (Pa)\n-40, 7.3e6\n-7.3, 7.1e6\n0, 7e6\n"
+                             "7.3, 7.1e6\n40, 7.3e6\n");
+    assert_int_equal(run_other("--out log --quiet"), 0);
+    assert_says("log/summary.txt", texts, 2);
+    csv_table *y = csv_read(program_path("log/line_y_001.csv"));
+    for (size_t i = 0; i < csv_rows(y); i++) {
+        double low = fabs(csv_get(y, i, "y")) - 1, high = low + 2;
+        double slope = low >= 7.3 ? 0.2e6 / 32.7 : 0.1e6 / 7.3;
+        if (low >= 0 && (low >= 7.3 || high <= 7.3))
+            assert_near(csv_get(y, i, "stress"),
+                        (low >= 7.3 ? 7.1e6 + slope * (low + 1 - 7.3) : 7e6 + slope * (low + 1)),
+                        1e-3);
+    }
+    assert_near(csv_get(y, 0, "y") - csv_get(y, 1, "y"), -2, 0);
+    csv_free(y);
+    static const char *const plot[] = {"interfaces = \"\"\n"};
+    assert_says("log/plot.gp", plot, 1);
 }
 
 static int has_row(const char *name) {
@@ -745,6 +829,10 @@ int main(void) {
         cmocka_unit_test(mesh_edge_is_told),
         cmocka_unit_test(mesh_edge_is_coarsened),
         cmocka_unit_test(two_sources),
+        cmocka_unit_test(source_outside_is_named),
+        cmocka_unit_test(mesh_that_cannot_be_coarsened_is_told),
+        cmocka_unit_test(stall_is_placed),
+        cmocka_unit_test(stress_log_stays_when_coarsened),
         cmocka_unit_test(control_c),
         cmocka_unit_test(terminated),
         cmocka_unit_test(shipped_scenes_start),

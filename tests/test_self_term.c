@@ -2,6 +2,7 @@
  * Constant elements beside the front: the term against other ways to find it, and what it does for
  * penny-shaped fractures whose pressure and width are known.
  */
+#include "check.h"
 #include "elastic/elasticity.h"
 #include "elastic/self_term.h"
 #include "tip/asymptote.h"
@@ -9,13 +10,7 @@
 
 #include <lapacke.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 #define PI 3.14159265358979323846
 
@@ -41,15 +36,15 @@ static double mean_by_points(double dx, double dy, const self_term_front *f) {
 static void means_of_powers(void **unused) {
     (void)unused;
     static const double alpha[] = {0, 1e-5, 0.02, 0.4, PI / 4, 1.2, PI / 2};
-    double worst = 0;
+    double worst = NOTHING_YET;
     for (size_t a = 0; a < sizeof alpha / sizeof *alpha; a++)
         for (double s = 0.3; s < 3; s *= 1.7) {
             self_term_front f = seen(s, alpha[a], 0.6);
-            worst =
-                fmax(worst, fabs(ilsai_self_term_mean(1, 0.5, &f) - mean_by_points(1, 0.5, &f)));
+            worst = worst_of(worst,
+                             fabs(ilsai_self_term_mean(1, 0.5, &f) - mean_by_points(1, 0.5, &f)));
         }
     print_message("means: %.1e off midpoints\n", worst);
-    assert_true(worst < 2e-5);
+    assert_below(worst, 2e-5);
 }
 
 /* ---- The term ----------------------------------------------------------------------------- */
@@ -58,7 +53,8 @@ static void table_gives_the_sum(void **unused) {
     (void)unused;
     static const double side[][2] = {{1, 1}, {1, 0.5}, {0.3, 0.9}, {2, 0.2}};
     for (size_t k = 0; k < sizeof side / sizeof *side; k++) {
-        double dx = side[k][0], dy = side[k][1], worst = 0, slope = 0, far = 0;
+        double dx = side[k][0], dy = side[k][1], worst = NOTHING_YET, slope = NOTHING_YET,
+               far = NOTHING_YET;
         self_term_table table;
         ilsai_self_term_table(&table, dx, dy);
         srand(7);
@@ -68,18 +64,18 @@ static void table_gives_the_sum(void **unused) {
             double full = dx * f.cos_a + dy * f.sin_a;
             f.s = full * (0.5 + 1.5 * rand() / RAND_MAX);
             self_term term = ilsai_self_term_lookup(&table, &f);
-            worst = fmax(worst, fabs(term.value - ilsai_self_term_exact(dx, dy, &f)));
+            worst = worst_of(worst, fabs(term.value - ilsai_self_term_exact(dx, dy, &f)));
             self_term_front next = f;
             next.s += 1e-6 * full;
             double difference = (ilsai_self_term_lookup(&table, &next).value - term.value) / 1e-6;
-            slope = fmax(slope, fabs(difference - term.slope * full));
-            far = f.s > 1.6 * full ? fmax(far, fabs(term.value)) : far;
+            slope = worst_of(slope, fabs(difference - term.slope * full));
+            far = f.s > 1.6 * full ? worst_of(far, fabs(term.value)) : far;
         }
         print_message("%g by %g: table %.1e off, slope %.1e off, %.1e beyond 1.6 cells\n", dx, dy,
                       worst, slope, far);
-        assert_true(worst < 2e-3);
-        assert_true(slope < 1e-3);
-        assert_true(far < 4e-3);
+        assert_below(worst, 2e-3);
+        assert_below(slope, 1e-3);
+        assert_below(far, 4e-3);
     }
 }
 
@@ -188,11 +184,11 @@ static double worst_width(const circle *c, int use_term) {
                 1 + ilsai_self_term_exact(c->dx, c->dy, &f);
     }
     assert_int_equal(LAPACKE_dposv(LAPACK_COL_MAJOR, 'U', n, 1, matrix, n, w, n), 0);
-    double worst = 0;
+    double worst = NOTHING_YET;
     for (int a = 0; a < n; a++) {
         const cell *p = &list[number[a]];
         if (c->R - hypot(p->i * c->dx, p->j * c->dy) < 1.6 * fmax(c->dx, c->dy))
-            worst = fmax(worst, fabs(w[a] / p->mean - 1));
+            worst = worst_of(worst, fabs(w[a] / p->mean - 1));
     }
     free(list);
     free(matrix);
@@ -212,7 +208,7 @@ static void pennies_have_their_widths(void **unused) {
         double with = worst_width(&c, 1), without = worst_width(&c, 0);
         print_message("uniform pressure, %g by %g, R = %g: widths %.2f %% off, %.2f %% without\n",
                       c.dx, c.dy, c.R, 100 * with, 100 * without);
-        assert_true(with < at[k].most);
+        assert_below(with, at[k].most);
         assert_true(without > 5 * with);
     }
 }
@@ -227,7 +223,7 @@ static void viscous_pennies_have_their_widths(void **unused) {
     double with = worst_width(&c, 1), without = worst_width(&c, 0);
     print_message("viscosity, R = %g: widths %.2f %% off, %.2f %% without\n", c.R, 100 * with,
                   100 * without);
-    assert_true(with < 0.01);
+    assert_below(with, 0.01);
     assert_true(without > 4 * with);
 }
 

@@ -1,17 +1,12 @@
 /* Snapshots: the same bits after a restore, and nothing changed by an image that is refused. */
 #include "base/error.h"
+#include "check.h"
 #include "failing.h"
 #include "host.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 /* Where things stand in an image: header {magic[8], layout, version, size, checksum}, then body. */
 enum { HEADER = 32, AT_LAYOUT = 8, AT_VERSION = 12, AT_CHECKSUM = 24 };

@@ -1,19 +1,14 @@
 /* Every function of solver.h: bad input of each kind, then what good input gives. */
 #include "base/tuning.h"
+#include "check.h"
 #include "elastic/elasticity.h"
 #include "host.h"
 
 #include <float.h>
 #include <math.h>
 #include <pthread.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static const double bad[] = {NAN, INFINITY, -INFINITY, -1};
 enum { BAD = sizeof bad / sizeof *bad };
@@ -857,7 +852,7 @@ static void survey_cells_follow_the_asymptote(void **state) {
     assert_int_equal(ilsa_get_cell_kinds(solver, &kind), ILSA_OK);
     memcpy(before, kind, sizeof before);
     host_steps(solver, 1);
-    double worst = 0;
+    double worst = NOTHING_YET;
     const ilsa_survey_point *points;
     size_t count;
     assert_true(!ilsa_get_width(solver, &width) && !ilsa_get_cell_kinds(solver, &kind));
@@ -873,12 +868,13 @@ static void survey_cells_follow_the_asymptote(void **state) {
         assert_true(fabs(p->y - 0.05 * row) < 1e-12);
         assert_int_equal(ilsa_tip_width(&scene.material, p->V, p->s, &w), ILSA_OK);
         if (before[p->cell] == ILSA_CELL_SURVEY)
-            worst = fmax(worst, fabs(w / p->w - 1));
+            worst = worst_of(worst, fabs(w / p->w - 1));
         double sum = p->regime.N_k + p->regime.N_mt + p->regime.N_m;
         assert_true(fabs(sum - 1) < 1e-12);
     }
     print_message("solver: survey cells off the asymptote by %.1e\n", worst);
-    assert_true(worst > 0 && worst < 0.05);
+    assert_true(worst > 0);
+    assert_below(worst, 0.05);
     ilsa_solver_destroy(&solver);
 }
 
@@ -914,7 +910,7 @@ static void the_model_says_what_is_on(void **state) {
 /* Steps of the same length by two solvers; returns the largest difference of width. */
 static double disagreement(ilsa_solver *a, ilsa_solver *b, int steps, int count) {
     const double *p, *q;
-    double worst = 0, largest = 0, dt;
+    double worst = NOTHING_YET, largest = 0, dt;
     for (int k = 0; k < steps; k++) {
         assert_int_equal(ilsa_suggest_dt(a, &dt), ILSA_OK);
         host_step(a, 0.9 * dt);
@@ -922,8 +918,8 @@ static double disagreement(ilsa_solver *a, ilsa_solver *b, int steps, int count)
     }
     assert_true(!ilsa_get_width(a, &p) && !ilsa_get_width(b, &q));
     for (int k = 0; k < count; k++) {
-        worst = fmax(worst, fabs(p[k] - q[k]));
-        largest = fmax(largest, p[k]);
+        worst = worst_of(worst, fabs(p[k] - q[k]));
+        largest = larger_of(largest, p[k]);
     }
     ilsa_solver_destroy(&a);
     ilsa_solver_destroy(&b);
@@ -948,7 +944,8 @@ static void loops_agree(void **state) {
     double off = disagreement(coupled, nested, 4, 51 * 41);
     print_message("solver: coupled and nested loops differ by %.1e, %ld and %ld passes\n", off,
                   passes[0], passes[1]);
-    assert_true(off < 1e-4 && passes[1] > passes[0]);
+    assert_below(off, 1e-4);
+    assert_true(passes[1] > passes[0]);
 }
 
 /*
@@ -972,7 +969,7 @@ static void linear_solvers_agree(void **state) {
         double off = disagreement(dense, gmres, 5, 51 * 41);
         print_message("solver: dense and GMRES differ by %.1e at tolerance %g\n", off,
                       tolerance[k]);
-        assert_true(off < (k ? 1e-7 : 4e-3));
+        assert_below(off, k ? 1e-7 : 4e-3);
     }
 }
 
@@ -991,7 +988,7 @@ static void products_agree(void **state) {
     assert_int_equal(model.product, ILSA_PRODUCT_BLAS);
     double off = disagreement(fft, blas, 5, 51 * 41);
     print_message("solver: FFT and BLAS differ by %.1e\n", off);
-    assert_true(off < 1e-9);
+    assert_below(off, 1e-9);
 }
 
 /* Each level takes smaller steps and a sharper tolerance, and all come to the same radius. */

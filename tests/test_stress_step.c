@@ -2,18 +2,13 @@
  * Steps of the far-field stress close behind the front: the width that one adds, against the
  * integral equation that it solves, and what it does for fronts just inside a barrier.
  */
+#include "check.h"
 #include "host.h"
 #include "tip/stress_step.h"
 #include "tip/tip_cell.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 #define PI 3.14159265358979323846
 
@@ -63,23 +58,23 @@ static void front_feels_no_jump(void **unused) {
 static void moment_is_the_integral(void **unused) {
     (void)unused;
     static const double ends[] = {1e-9, 1e-4, 0.3, 0.9, 1, 1.1, 4, 300};
-    double worst = 0;
+    double worst = NOTHING_YET;
     for (int k = 0; k < 8; k++) {
         enum { POINTS = 20000 };
         double sum = 0;
         for (int i = 0; i < POINTS; i++)
             sum += ilsai_stress_step_width(2.5 * ends[k] * (i + 0.5) / POINTS, 2.5) * 2.5 *
                    ends[k] / POINTS;
-        worst = fmax(worst, fabs(ilsai_stress_step_moment(2.5 * ends[k], 2.5) / sum - 1));
+        worst = worst_of(worst, fabs(ilsai_stress_step_moment(2.5 * ends[k], 2.5) / sum - 1));
     }
     print_message("jump: moment %.1e off midpoints\n", worst);
-    assert_true(worst < 1e-6);
+    assert_below(worst, 1e-6);
 }
 
 /* The part of it in a cell, by midpoints. */
 static void volume_in_a_cell(void **unused) {
     (void)unused;
-    double worst = 0;
+    double worst = NOTHING_YET;
     for (double alpha = 0; alpha < 1.6; alpha += 0.31)
         for (double ell = 0.2; ell < 2; ell += 0.35) {
             enum { POINTS = 400 };
@@ -91,10 +86,10 @@ static void volume_in_a_cell(void **unused) {
                 sum += ilsai_stress_step_width(ell - x * f.cos_a - y * f.sin_a, 0.6);
             }
             sum *= f.dx * f.dy / (POINTS * POINTS);
-            worst = fmax(worst, fabs(ilsai_tip_cell_step_volume(0.6, &f) - sum));
+            worst = worst_of(worst, fabs(ilsai_tip_cell_step_volume(0.6, &f) - sum));
         }
     print_message("jump: volume in a cell %.1e off midpoints\n", worst);
-    assert_true(worst < 1e-3);
+    assert_below(worst, 1e-3);
     assert_true(ilsai_tip_cell_step_volume(1, &(tip_cell_front){-1, 1, 0, 1, 1}) == 0);
 }
 

@@ -3,19 +3,14 @@
  * depend on how many there are. `make tsan` runs this under ThreadSanitizer.
  */
 #include "base/thread_pool.h"
+#include "check.h"
 #include "failing.h"
 #include "host.h"
 
 #include <pthread.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
-
-#include <cmocka.h>
 
 /* ---- The team ---------------------------------------------------------------------------------
  */

@@ -1,8 +1,8 @@
 /* The choice of the tip model: what each grows, where they agree, and what the full one is worth.
  */
+#include "check.h"
 #include "csv.h"
 #include "host.h"
-#include "numbers.h"
 
 static host_scene penny_of(double phi, int n, double h, ilsa_tip_model tip) {
     host_scene scene = host_penny(phi, n, h);
@@ -145,7 +145,7 @@ static void regimes_are_of_all_processes(void **state) {
     size_t count;
     assert_int_equal(ilsa_advance(solver, 0.7, NULL), ILSA_OK);
     assert_int_equal(ilsa_get_survey(solver, &survey, &count), ILSA_OK);
-    assert_true(count > 20);
+    int moving = 0;
     for (size_t i = 0; i < count; i++) {
         const ilsa_survey_point *p = &survey[i];
         ilsa_tip_regime there;
@@ -157,7 +157,9 @@ static void regimes_are_of_all_processes(void **state) {
         assert_int_equal(ilsa_tip_triangle(&scene.material, p->V, p->s, w, &there), ILSA_OK);
         assert_memory_equal(&there, &p->regime, sizeof there);
         assert_true(p->regime.N_m > 0.3);
+        moving++;
     }
+    assert_true(moving > 20);
     assert_int_equal(ilsa_get_front(solver, &front, &count), ILSA_OK);
     for (size_t i = 0; i < count; i++)
         assert_below(fabs(front[i].regime.N_k + front[i].regime.N_m - 1), 1e-12);

@@ -2,7 +2,7 @@
  * Units: a scene in any units of length, time and force is the same fracture. The scenes of
  * examples/scenes, and the ways of solving them, in units that are 1e-12 and 1e12 of the first.
  */
-#include "numbers.h"
+#include "check.h"
 #include "shown.h"
 
 /* Cells of 20 m / CELLS, which is half of what the scenes are shown on. */
@@ -30,7 +30,7 @@ static void step(ilsa_solver *solver, double end) {
 static shown_difference worst_in(const shown *s, const shown_units *units, int count, int steps,
                                  event *happens) {
     const shown_units one = {1, 1, 1};
-    shown_difference worst = {0};
+    shown_difference worst = SHOWN_NOTHING_YET;
     ilsa_solver *first = host_started(&s->scene, s->radius), *other[MOST_UNITS];
     shown in[MOST_UNITS];
     for (int n = 0; n < count; n++) {

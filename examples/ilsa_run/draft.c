@@ -5,6 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Of a value that may be a log of thousands of layers. */
+enum { SHOWN = 100 };
+
 static void begin_error(draft *d, int line, const char *section_name, const char *key,
                         const char *text) {
     d->error_count++;
@@ -16,7 +19,7 @@ static void begin_error(draft *d, int line, const char *section_name, const char
     if (key)
         fprintf(d->errors, " %s", key);
     if (text)
-        fprintf(d->errors, " = %s", text);
+        fprintf(d->errors, strlen(text) > SHOWN ? " = %.*s..." : " = %.*s", SHOWN, text);
     fputs(section_name ? ": " : " ", d->errors);
 }
 
@@ -130,10 +133,13 @@ static void take_key(draft *d, const ini_item *item) {
     value->text = item->value;
     const char *wrong = key_read(&s->def->keys[key], item->value, value);
     if (wrong) {
-        char range[160];
+        char range[160], place[40] = "";
+        key_kind kind = s->def->keys[key].kind;
         key_range(&s->def->keys[key], range, sizeof range);
-        draft_error(d, item->line, item->section, item->name, item->value, "%smust be %s", wrong,
-                    range);
+        if (strlen(item->value) > SHOWN && (kind == KEY_LIST || kind == KEY_SCHEDULE))
+            snprintf(place, sizeof place, "entry %d: ", value->count + 1);
+        draft_error(d, item->line, item->section, item->name, item->value, "%s%smust be %s", place,
+                    wrong, range);
     }
 }
 

@@ -6,12 +6,19 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/types.h>
 
-/* inih hands its handler no line numbers unless built so: the reader counts them. */
+/*
+ * inih finds names and continuations, and what is neither. It hands its handler no line numbers
+ * unless built so, and cuts lines to a buffer of 200 characters: the reader counts the lines, keeps
+ * the present one whole and takes the values from it.
+ */
 typedef struct reader {
     FILE *stream;
     ini_file *file;
     char *section;
+    char *text; /* the present line, from its first word to its last */
+    size_t room;
     int continued; /* this line goes on with the value of the last item */
     int no_memory;
 } reader;
@@ -42,50 +49,68 @@ static void add_item(reader *r, const char *name, const char *value) {
 
 static void continue_item(reader *r, const char *more) {
     ini_item *item = &r->file->items[r->file->count - 1];
-    size_t length = strlen(item->value), extra = strcspn(more, ";");
+    size_t length = strlen(item->value), extra = strlen(more);
     char *value = realloc(item->value, length + extra + 2);
     if (!value) {
         r->no_memory = 1;
         return;
     }
     value[length] = ' ';
-    memcpy(value + length + 1, more, extra);
-    value[length + 1 + extra] = '\0';
+    memcpy(value + length + 1, more, extra + 1);
     item->value = value;
+}
+
+static char *skip_blanks(char *text) {
+    return text + strspn(text, " \t\r");
 }
 
 static int take_pair(void *user, const char *section, const char *name, const char *value) {
     reader *r = user;
-    (void)section; /* inih cuts it to 49 characters; the reader has it whole */
+    (void)section; /* inih cuts it to 49 characters, and the value with its line */
+    (void)value;
     if (r->continued)
-        continue_item(r, value);
+        continue_item(r, r->text);
     else
-        add_item(r, name, value);
+        add_item(r, name, skip_blanks(r->text + strcspn(r->text, "=:") + 1));
     return 1;
 }
 
-/* Reads one line without its end; longer ones are cut and reported. 0 at the end of the file. */
-static int get_line(reader *r, char *line, int size) {
-    int length = 0, c;
-    while ((c = getc(r->stream)) != EOF && c != '\n') {
-        if (c == '\0')
-            set_error(r->file, r->file->lines + 1, "not a text file");
-        else if (length < size - 1)
-            line[length++] = (char)c;
-        else
-            set_error(r->file, r->file->lines + 1,
-                      "line too long; go on with a list on a line that starts with a blank");
-    }
-    line[length] = '\0';
-    if (c == EOF && length == 0)
+static void drop(char *text, size_t count) {
+    memmove(text, text + count, strlen(text + count) + 1);
+}
+
+/* Where a comment begins: a ; or # at the start or after a blank. */
+static size_t comment_start(const char *text) {
+    size_t at = strcspn(text, ";#");
+    while (text[at] && at > 0 && !strchr(" \t", text[at - 1]))
+        at += 1 + strcspn(text + at + 1, ";#");
+    return at;
+}
+
+/* Reads one line, without its comment and the blanks at its end. 0 at the end of the file. */
+static int get_line(reader *r) {
+    static const char byte_order_mark[] = "\xEF\xBB\xBF";
+    errno = 0;
+    ssize_t length = getline(&r->text, &r->room, r->stream);
+    if (length < 0) {
+        r->no_memory |= errno == ENOMEM;
         return 0;
+    }
     r->file->lines++;
+    if (strlen(r->text) < (size_t)length)
+        set_error(r->file, r->file->lines, "not a text file");
+    if (r->file->lines == 1 && strncmp(r->text, byte_order_mark, 3) == 0)
+        drop(r->text, 3);
+    size_t end = comment_start(r->text);
+    while (end > 0 && strchr(" \t\r\n", r->text[end - 1]))
+        end--;
+    r->text[end] = '\0';
     return 1;
 }
 
 static void take_heading(reader *r, const char *start) {
     const char *end = strchr(start, ']');
-    if (!end || !strchr(";#", end[1 + strspn(end + 1, " \t\r")])) {
+    if (!end || !strchr(";#", end[1 + strspn(end + 1, " \t")])) {
         set_error(r->file, r->file->lines, "a heading must be [section]");
         return;
     }
@@ -99,24 +124,20 @@ static void take_heading(reader *r, const char *start) {
 
 /*
  * inih takes every indented line for a continuation. Headings and keys may be indented here, so
- * they are moved to the margin.
+ * they are moved to the margin, and what does continue stands one blank from it.
  */
 static char *read_line(char *line, int size, void *user) {
-    static const char byte_order_mark[] = "\xEF\xBB\xBF";
     reader *r = user;
-    if (!get_line(r, line, size))
+    if (!get_line(r))
         return NULL;
-    if (r->file->lines == 1 && strncmp(line, byte_order_mark, 3) == 0)
-        memmove(line, line + 3, strlen(line + 3) + 1);
-    char *start = line + strspn(line, " \t");
-    int is_key = memchr(start, '=', strcspn(start, ";")) != NULL;
+    size_t indent = strspn(r->text, " \t");
+    drop(r->text, indent);
     r->continued = 0;
-    if (*start == '[')
-        take_heading(r, start);
-    else if (start > line && !is_key)
+    if (*r->text == '[')
+        take_heading(r, r->text);
+    else if (indent > 0 && *r->text && !strchr(r->text, '='))
         r->continued = r->file->count > 0 && r->file->items[r->file->count - 1].name != NULL;
-    if (!r->continued)
-        memmove(line, start, strlen(start) + 1);
+    snprintf(line, (size_t)size, "%s%s", r->continued ? " " : "", r->text);
     return line;
 }
 
@@ -130,6 +151,7 @@ int ini_file_read(const char *path, ini_file *file) {
     int failed = ferror(r.stream) ? errno : r.no_memory ? ENOMEM : 0;
     fclose(r.stream);
     free(r.section);
+    free(r.text);
     if (bad_line > 0)
         set_error(file, bad_line, "neither [section] nor key = value");
     if (!failed)

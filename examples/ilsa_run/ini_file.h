@@ -20,7 +20,8 @@ typedef struct ini_file {
 
 /*
  * Reads a file. 1: read, though perhaps with an error set; 0: it cannot be read, errno says why.
- * A line that starts with a blank and has no '=' continues the value above it.
+ * Lines are of any length. One that starts with a blank and has no '=' continues the value above
+ * it; a ; or # at the start of a line or after a blank begins a comment.
  */
 int ini_file_read(const char *path, ini_file *file);
 

@@ -37,7 +37,12 @@ const section_def sections[SECTION_COUNT] = {
       {"dx", KEY_NUMBER, POSITIVE},
       {"dy", KEY_NUMBER, POSITIVE},
       {"symmetry", KEY_CHOICE, 0, 0, 0, {"auto", "none", "x", "y", "xy"}}}},
-    {"stress", 0, {{"sigma", KEY_LIST, ANY}, {"interfaces", KEY_LIST, ANY}}},
+    {"stress",
+     0,
+     {{"sigma", KEY_LIST, ANY},
+      {"interfaces", KEY_LIST, ANY},
+      {"profile", KEY_FILE, ANY},
+      {"origin_depth", KEY_NUMBER, ANY}}},
     {"injection",
      1,
      {{"rate", KEY_NUMBER, NOT_NEG},
@@ -73,8 +78,13 @@ static int read_number(const char **text, double *number) {
     return 1;
 }
 
-static int in_range(const key_def *key, double number) {
-    return number <= key->max && (key->above_min ? number > key->min : number >= key->min);
+/* What is wrong with a number, or NULL. A key that has no use for 0 has none for what is nearly. */
+static const char *check_range(const key_def *key, double number) {
+    if (!(number <= key->max && (key->above_min ? number > key->min : number >= key->min)))
+        return "";
+    if (fabs(number) > MAGNITUDE_MOST)
+        return "beyond 1e60; ";
+    return key->above_min && number < MAGNITUDE_LEAST ? "under 1e-60; " : NULL;
 }
 
 static const char *read_single(const key_def *key, const char *text, key_value *value) {
@@ -82,7 +92,7 @@ static const char *read_single(const key_def *key, const char *text, key_value *
         return "not a number; ";
     if (key->kind == KEY_WHOLE && value->number != floor(value->number))
         return "not a whole number; ";
-    return in_range(key, value->number) ? NULL : "";
+    return check_range(key, value->number);
 }
 
 static const char *read_choice(const key_def *key, const char *text, key_value *value) {
@@ -101,11 +111,13 @@ static const char *read_entry(const key_def *key, const char **text, double *ent
     if (schedule) {
         if (!read_number(text, entry++) || **text != ':')
             return "not pairs t:Q; ";
+        if (fabs(entry[-1]) > MAGNITUDE_MOST)
+            return "beyond 1e60; ";
         ++*text;
     }
     if (!read_number(text, entry) || (**text && **text != ','))
         return schedule ? "not pairs t:Q; " : "not a list of numbers; ";
-    return in_range(key, *entry) ? NULL : "";
+    return check_range(key, *entry);
 }
 
 static int times_rise_from_zero(const key_value *schedule) {
@@ -141,6 +153,8 @@ const char *key_read(const key_def *key, const char *text, key_value *value) {
     switch (key->kind) {
     case KEY_CHOICE:
         return read_choice(key, text, value);
+    case KEY_FILE:
+        return *text ? NULL : "";
     case KEY_LIST:
     case KEY_SCHEDULE:
         return read_list(key, text, value);
@@ -169,6 +183,8 @@ void key_range(const key_def *key, char *text, size_t size) {
         snprintf(text, size, "a whole number %s", range);
     else if (key->kind == KEY_NUMBER)
         snprintf(text, size, "%s", range);
+    else if (key->kind == KEY_FILE)
+        snprintf(text, size, "the path of a file, from the directory of the scene on");
     if (key->kind != KEY_CHOICE)
         return;
     size_t used = (size_t)snprintf(text, size, "%s", key->words[0]);

@@ -10,7 +10,8 @@ typedef enum key_kind {
     KEY_WHOLE,    /* a whole number */
     KEY_LIST,     /* a, b, ... */
     KEY_SCHEDULE, /* t:a, t:b, ... the times from 0 up */
-    KEY_CHOICE    /* one of several words */
+    KEY_CHOICE,   /* one of several words */
+    KEY_FILE      /* the path of a file */
 } key_kind;
 
 typedef struct key_def {
@@ -51,7 +52,7 @@ enum {
     MATERIAL_C_PRIME
 };
 enum { MESH_NX, MESH_NY, MESH_DX, MESH_DY, MESH_SYMMETRY };
-enum { STRESS_SIGMA, STRESS_INTERFACES };
+enum { STRESS_SIGMA, STRESS_INTERFACES, STRESS_PROFILE, STRESS_ORIGIN_DEPTH };
 enum { INJECTION_RATE, INJECTION_SCHEDULE, INJECTION_X, INJECTION_Y };
 enum { INITIAL_RADIUS, INITIAL_TIME };
 enum {
@@ -68,13 +69,18 @@ enum {
 
 extern const section_def sections[SECTION_COUNT];
 
+/* The largest magnitude that the library takes, and the smallest that it takes for what is not 0.
+ */
+#define MAGNITUDE_MOST  1e60
+#define MAGNITUDE_LEAST 1e-60
+
 /* A value as read. */
 typedef struct key_value {
     int line;         /* 0: the key was not given */
     const char *text; /* as in the file */
     double number;    /* NUMBER, WHOLE; CHOICE: the place of the word */
     double *numbers;  /* LIST: count values; SCHEDULE: count pairs t, a */
-    int count;
+    int count;        /* of a text that is refused: those before the wrong one */
 } key_value;
 
 /*

@@ -4,6 +4,7 @@
 #include "outfile.h"
 #include "run.h"
 #include "scene.h"
+#include "stress_log.h"
 
 #include <getopt.h>
 #include <stdlib.h>
@@ -88,6 +89,17 @@ static char *default_directory(const char *scene_path) {
     return directory;
 }
 
+static int run(scene *sc, const options *o) {
+    if (o->level)
+        sc->level = o->level;
+    if (o->threads)
+        sc->threads = o->threads;
+    char *directory = o->out ? strdup(o->out) : default_directory(o->scene);
+    int exit_status = directory ? run_scene(sc, directory, o->quiet) : EXIT_RUN_FAILED;
+    free(directory);
+    return exit_status;
+}
+
 int main(int argc, char **argv) {
     options o = {0};
     scene sc;
@@ -102,13 +114,7 @@ int main(int argc, char **argv) {
     }
     if (!scene_read(o.scene, &sc, stderr))
         return EXIT_BAD_SCENE;
-    if (o.level)
-        sc.level = o.level;
-    if (o.threads)
-        sc.threads = o.threads;
-    char *directory = o.out ? strdup(o.out) : default_directory(o.scene);
-    int exit_status = directory ? run_scene(&sc, directory, o.quiet) : EXIT_RUN_FAILED;
-    free(directory);
+    int exit_status = stress_log_take(&sc, stderr) ? run(&sc, &o) : EXIT_BAD_SCENE;
     scene_free(&sc);
     return exit_status;
 }

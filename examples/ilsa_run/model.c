@@ -1,5 +1,7 @@
 #include "model.h"
 
+#include "reason.h"
+
 #include <stdlib.h>
 
 typedef struct parts {
@@ -63,16 +65,24 @@ static ilsa_status make_solver(const scene *sc, const parts *p, ilsa_solver **so
     return ilsa_solver_create(&def, solver);
 }
 
-/* What the library finds wrong with a scene that passed our own checks. */
-static int refused(const scene *sc, int line, const char *what, ilsa_status status,
+/* What the library finds wrong with a scene that passed our own checks, said of a key. */
+static int refused(const scene *sc, int section, int key, const char *note, ilsa_status status,
                    const ilsa_solver *solver) {
-    fprintf(stderr, "%s:", sc->path);
-    if (line > 0)
-        fprintf(stderr, "%d:", line);
-    fprintf(stderr, " %s: %s: %s\n", what, ilsa_status_text(status), ilsa_last_error(solver));
+    scene_error(sc, stderr, section, key, "%s: %s", note, ilsa_last_error(solver));
     return status == ILSA_ERR_VALUE || status == ILSA_ERR_MISMATCH || status == ILSA_MESH_EDGE
                ? EXIT_BAD_SCENE
                : EXIT_RUN_FAILED;
+}
+
+/* The penny follows from its radius or time, from the material and from the rate. */
+static int refused_start(const scene *sc, ilsa_status status, const ilsa_solver *solver) {
+    char note[160];
+    int by_radius = sc->radius > 0;
+    snprintf(note, sizeof note, " = %.10g, with [material] of line %d and the rate of line %d",
+             by_radius ? sc->radius : sc->time, sc->headings[SECTION_MATERIAL],
+             sc->sources[0].line);
+    return refused(sc, SECTION_INITIAL, by_radius ? INITIAL_RADIUS : INITIAL_TIME, note, status,
+                   solver);
 }
 
 static int start_fracture(const scene *sc, ilsa_solver *solver) {
@@ -80,14 +90,15 @@ static int start_fracture(const scene *sc, ilsa_solver *solver) {
     ilsa_status status = sc->radius > 0 ? ilsa_start_radial(solver, sc->radius)
                                         : ilsa_start_radial_at(solver, sc->time);
     if (status)
-        return refused(sc, sc->initial_line, sc->radius > 0 ? "[initial] radius" : "[initial] time",
-                       status, solver);
+        return refused_start(sc, status, solver);
     status = ilsa_get_time(solver, &t);
     if (!status && !scene_check_start(sc, t, stderr))
         return EXIT_BAD_SCENE;
     if (!status)
         status = model_set_rates(sc, solver, t);
-    return status ? refused(sc, 0, "start", status, solver) : EXIT_DONE;
+    if (status)
+        return refused(sc, SECTION_INJECTION, INJECTION_RATE, "", status, solver);
+    return reason_outside(sc, solver, stderr) ? EXIT_BAD_SCENE : EXIT_DONE;
 }
 
 int model_start(const scene *sc, ilsa_solver **solver) {
@@ -98,11 +109,10 @@ int model_start(const scene *sc, ilsa_solver **solver) {
     if (!status)
         status = make_solver(sc, &p, solver);
     if (status == ILSA_ERR_MISMATCH)
-        exit_status = refused(sc, sc->symmetry_line,
-                              "[mesh] symmetry: must be one that stress and sources have, or auto",
-                              status, NULL);
+        exit_status = refused(sc, SECTION_MESH, MESH_SYMMETRY,
+                              ": must be one that stress and sources have, or auto", status, NULL);
     else if (status)
-        exit_status = refused(sc, 0, "scene", status, NULL);
+        exit_status = refused(sc, SECTION_MESH, MESH_NX, "", status, NULL);
     else
         exit_status = start_fracture(sc, *solver);
     parts_free(&p);

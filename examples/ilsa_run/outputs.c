@@ -61,8 +61,10 @@ static int write_plot(const outputs *o, const char *directory, const scene *sc) 
     for (int i = 0; i < o->count; i++)
         fprintf(s, "%d ", o->list[i].loops);
     fputs("\"\n", s);
-    put_list(s, "interfaces", sc->interfaces, sc->interface_count);
-    put_list(s, "sigma", sc->sigma, sc->interface_count + 1);
+    /* The half cells of a log are no interfaces to be drawn. */
+    int interfaces = sc->log.file ? 0 : sc->interface_count;
+    put_list(s, "interfaces", sc->interfaces, interfaces);
+    put_list(s, "sigma", sc->sigma, interfaces + 1);
     return outfile_close(&file);
 }
 

@@ -4,10 +4,12 @@
 #include "model.h"
 #include "outputs.h"
 #include "progress.h"
+#include "reason.h"
 #include "summary.h"
 
 #include <math.h>
 #include <signal.h>
+#include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
@@ -45,6 +47,7 @@ typedef struct run {
     int next_output;    /* of the scene's output times */
     int unsaved;        /* steps since the last output */
     int writing_failed; /* stderr has said so */
+    ilsa_report last;   /* of the last advance */
 } run;
 
 static double wall_seconds(const run *r) {
@@ -72,9 +75,8 @@ static void save(run *r) {
 }
 
 static ilsa_status take_step(run *r) {
-    ilsa_report report;
     ilsa_summary now;
-    ilsa_status status = ilsa_advance_one(r->solver, step_limit(r), &report);
+    ilsa_status status = ilsa_advance_one(r->solver, step_limit(r), &r->last);
     if (status == ILSA_CLOSED)
         status = ilsa_wait(r->solver, step_limit(r));
     if (!status)
@@ -84,7 +86,7 @@ static ilsa_status take_step(run *r) {
     r->t = now.time;
     r->steps++;
     r->unsaved = 1;
-    if (!history_row(&r->history, &now, &report, wall_seconds(r)))
+    if (!history_row(&r->history, &now, &r->last, wall_seconds(r)))
         r->writing_failed = 1;
     progress_show(&r->bar, r->t, r->steps, wall_seconds(r));
     if (r->next_output < r->sc->output_count && r->t >= r->sc->output_times[r->next_output]) {
@@ -98,16 +100,29 @@ static ilsa_status take_step(run *r) {
 static void put_ending(const run *r, ilsa_status status, char *text, size_t size) {
     if (r->writing_failed)
         snprintf(text, size, "failed at t = %.10g: a result file could not be written", r->t);
+    else if (status == ILSA_ERR_STATE)
+        snprintf(text, size, "failed at t = %.10g of %.10g: a source injects outside the fracture",
+                 r->t, r->sc->t_end);
     else if (status)
-        snprintf(text, size, "failed at t = %.10g of %.10g: %s: %s%s", r->t, r->sc->t_end,
-                 ilsa_status_text(status), ilsa_last_error(r->solver),
-                 status == ILSA_MESH_EDGE ? "; give [mesh] more cells, or [run] coarsen = yes"
-                                          : "");
+        snprintf(text, size, "failed at t = %.10g of %.10g: %s: %s", r->t, r->sc->t_end,
+                 ilsa_status_text(status), ilsa_last_error(r->solver));
     else if (r->t < r->sc->t_end)
         snprintf(text, size, "stopped by %s at t = %.10g of %.10g",
                  caught == SIGINT ? "Ctrl-C" : "SIGTERM", r->t, r->sc->t_end);
     else
         snprintf(text, size, "done");
+}
+
+/* What the scene has to do with it, in lines of their own; to be freed. NULL: there is nothing. */
+static char *find_reason(const run *r, ilsa_status status) {
+    char *reason = NULL;
+    size_t size = 0;
+    FILE *text = status ? open_memstream(&reason, &size) : NULL;
+    if (!text)
+        return NULL;
+    reason_write(r->sc, r->solver, status, &r->last, text);
+    fclose(text);
+    return reason;
 }
 
 /* The closing line; 0 with a message if it cannot be written. */
@@ -118,11 +133,13 @@ static int put_done(const run *r) {
 }
 
 /* Says how the run ended on the terminal, unless all is well and quiet; the exit status. */
-static int conclude(const run *r, ilsa_status status, int quiet, const char *ended) {
+static int conclude(const run *r, ilsa_status status, int quiet, const char *ended,
+                    const char *reason) {
     int done = !r->writing_failed && !status && r->t >= r->sc->t_end;
     if (done)
         return quiet || put_done(r) ? EXIT_DONE : EXIT_RUN_FAILED;
-    fprintf(stderr, "ilsa-run: %s; what was reached is in %s\n", ended, r->directory);
+    fprintf(stderr, "ilsa-run: %s; what was reached is in %s\n%s", ended, r->directory,
+            reason ? reason : "");
     return r->writing_failed || status ? EXIT_RUN_FAILED : 128 + caught;
 }
 
@@ -137,11 +154,14 @@ static int run_steps(run *r, int quiet) {
         r->writing_failed = 1;
     progress_end(&r->bar);
     put_ending(r, status, ended, sizeof ended);
-    if (!summary_write(r->directory, r->sc, r->solver, ended, wall_seconds(r))) {
+    char *reason = find_reason(r, status);
+    if (!summary_write(r->directory, r->sc, r->solver, (ending){ended, reason}, wall_seconds(r))) {
         r->writing_failed = 1;
         put_ending(r, status, ended, sizeof ended);
     }
-    return conclude(r, status, quiet, ended);
+    int exit_status = conclude(r, status, quiet, ended, reason);
+    free(reason);
+    return exit_status;
 }
 
 int run_scene(const scene *sc, const char *directory, int quiet) {

@@ -3,6 +3,7 @@
 #include "draft.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -38,6 +39,20 @@ static int require_one(draft *d, const section *s, int a, int b) {
     return 0;
 }
 
+/* Of two keys that say the same the one given. */
+static int given(const section *s, int a, int b) {
+    return draft_has(s, a) ? a : b;
+}
+
+/* Something must hold the front back. */
+static void check_front(draft *d, const section *s) {
+    int mu = given(s, MATERIAL_MU, MATERIAL_MU_PRIME),
+        K = given(s, MATERIAL_K_IC, MATERIAL_K_PRIME);
+    if (!d->error_count && s->values[mu].number == 0 && s->values[K].number == 0)
+        draft_range_error(d, s, mu, "> 0 where %s = 0 (line %d): nothing holds the front",
+                          s->def->keys[K].name, s->values[K].line);
+}
+
 static void check_material(draft *d, const section *s) {
     require_one(d, s, MATERIAL_E, MATERIAL_E_PRIME);
     require_one(d, s, MATERIAL_MU, MATERIAL_MU_PRIME);
@@ -48,6 +63,21 @@ static void check_material(draft *d, const section *s) {
     else if (draft_has(s, MATERIAL_NU) && draft_has(s, MATERIAL_E_PRIME))
         draft_error(d, s->values[MATERIAL_NU].line, s->name, "nu", s->values[MATERIAL_NU].text,
                     "must be given with E only; E_prime contains it");
+    check_front(d, s);
+}
+
+/* A scaled value may be beyond what the library takes though the one it is made of is not. */
+static void check_scaled(draft *d, const section *s, int plain, int scaled, double value,
+                         double least) {
+    int key = given(s, plain, scaled);
+    if (value == 0 || (value >= least && value <= MAGNITUDE_MOST))
+        return;
+    if (key == scaled)
+        draft_range_error(d, s, key, "in %g .. %g", least, MAGNITUDE_MOST);
+    else
+        draft_error(d, s->values[key].line, s->name, s->def->keys[key].name, s->values[key].text,
+                    "%s is %.10g; must be in %g .. %g", s->def->keys[scaled].name, value, least,
+                    MAGNITUDE_MOST);
 }
 
 /* Finite values of a rock may still be out of range once scaled. */
@@ -66,6 +96,10 @@ static void take_material(draft *d, scene *sc, const section *s) {
     m->mu_prime = number_or(s, MATERIAL_MU_PRIME, m->mu_prime);
     m->K_prime = number_or(s, MATERIAL_K_PRIME, m->K_prime);
     m->C_prime = number_or(s, MATERIAL_C_PRIME, m->C_prime);
+    check_scaled(d, s, MATERIAL_E, MATERIAL_E_PRIME, m->E_prime, MAGNITUDE_LEAST);
+    check_scaled(d, s, MATERIAL_MU, MATERIAL_MU_PRIME, m->mu_prime, MAGNITUDE_LEAST);
+    check_scaled(d, s, MATERIAL_K_IC, MATERIAL_K_PRIME, m->K_prime, 0);
+    check_scaled(d, s, MATERIAL_C_L, MATERIAL_C_PRIME, m->C_prime, 0);
     sc->laboratory = draft_has(s, MATERIAL_E);
 }
 
@@ -93,33 +127,70 @@ static void take_mesh(scene *sc, const section *s) {
     sc->mesh.dx = s->values[MESH_DX].number;
     sc->mesh.dy = number_or(s, MESH_DY, sc->mesh.dx);
     sc->symmetry = symmetries[(int)number_or(s, MESH_SYMMETRY, 0)];
-    sc->symmetry_line = s->values[MESH_SYMMETRY].line;
 }
 
-static int rises(const key_value *list) {
+/* The place of the first value of a list that is not above the one before it; 0: there is none. */
+static int first_fall(const key_value *list) {
     for (int i = 1; i < list->count; i++)
         if (list->numbers[i] <= list->numbers[i - 1])
-            return 0;
-    return 1;
+            return i;
+    return 0;
+}
+
+/* What a list must be that does not rise; names the two values. */
+static void fall_error(draft *d, const section *s, int key, const char *range) {
+    const key_value *list = &s->values[key];
+    int i = first_fall(list);
+    double before = list->numbers[i - 1], after = list->numbers[i];
+    if (before == after)
+        draft_error(d, list->line, s->name, s->def->keys[key].name, list->text,
+                    "values %d and %d are both %.15g; must be %s", i, i + 1, after, range);
+    else
+        draft_error(d, list->line, s->name, s->def->keys[key].name, list->text,
+                    "value %d, %.15g, is below value %d, %.15g; must be %s", i + 1, after, i,
+                    before, range);
+}
+
+static void check_log(draft *d, const section *s) {
+    const key_value *interfaces = &s->values[STRESS_INTERFACES];
+    const key_value *depth = &s->values[STRESS_ORIGIN_DEPTH];
+    if (draft_has(s, STRESS_PROFILE) && interfaces->line)
+        draft_error(d, interfaces->line, s->name, "interfaces", interfaces->text,
+                    "profile is given too, on line %d; must be either interfaces or profile",
+                    s->values[STRESS_PROFILE].line);
+    if (!draft_has(s, STRESS_PROFILE) && depth->line)
+        draft_error(d, depth->line, s->name, "origin_depth", depth->text,
+                    "must be given with profile only");
 }
 
 static void check_stress(draft *d, const section *s) {
     const key_value *interfaces = &s->values[STRESS_INTERFACES];
-    if (!draft_require(d, s, STRESS_SIGMA) || d->error_count)
+    int count = s->values[STRESS_SIGMA].count;
+    require_one(d, s, STRESS_SIGMA, STRESS_PROFILE);
+    check_log(d, s);
+    if (d->error_count || draft_has(s, STRESS_PROFILE))
         return;
-    if (!rises(interfaces))
-        draft_range_error(d, s, STRESS_INTERFACES, "rising, from the bottom interface up");
-    if (s->values[STRESS_SIGMA].count == interfaces->count + 1)
+    if (first_fall(interfaces))
+        fall_error(d, s, STRESS_INTERFACES, "rising, from the bottom interface up");
+    if (count == interfaces->count + 1)
         return;
     if (interfaces->count)
-        draft_range_error(d, s, STRESS_SIGMA, "%d values, one more than interfaces",
-                          interfaces->count + 1);
+        draft_range_error(d, s, STRESS_SIGMA, "%d values, one more than interfaces, not %d",
+                          interfaces->count + 1, count);
     else
         draft_range_error(d, s, STRESS_SIGMA, "one value, or interfaces must be given");
 }
 
-static void take_stress(scene *sc, section *s) {
+static void take_stress(draft *d, scene *sc, section *s) {
     int layers;
+    if (draft_has(s, STRESS_PROFILE)) {
+        sc->log.file = strdup(s->values[STRESS_PROFILE].text);
+        sc->log.has_origin_depth = draft_has(s, STRESS_ORIGIN_DEPTH);
+        sc->log.origin_depth = number_or(s, STRESS_ORIGIN_DEPTH, 0);
+        if (!sc->log.file)
+            draft_error(d, 0, NULL, NULL, NULL, "out of memory");
+        return;
+    }
     sc->sigma = take_numbers(s, STRESS_SIGMA, &layers);
     sc->interfaces = take_numbers(s, STRESS_INTERFACES, &sc->interface_count);
 }
@@ -144,12 +215,15 @@ static void check_injection(draft *d, const section *s, const section *mesh) {
                 0.5 * mesh->values[MESH_NY].number * number_or(mesh, MESH_DY, dx));
 }
 
+const char *scene_source_name(char *name, int source) {
+    snprintf(name, SOURCE_NAME_SIZE, source > 0 ? "injection.%d" : "injection", source + 1);
+    return name;
+}
+
 /* The section of source i = 0, 1, ..., or NULL. */
 static section *injection(const draft *d, int i) {
-    char name[32] = "injection";
-    if (i > 0)
-        snprintf(name, sizeof name, "injection.%d", i + 1);
-    return draft_section(d, name);
+    char name[SOURCE_NAME_SIZE];
+    return draft_section(d, scene_source_name(name, i));
 }
 
 static int take_source(scene_source *source, const section *s) {
@@ -200,19 +274,31 @@ static void check_injections(draft *d, const section *mesh) {
     }
 }
 
-/* The library needs 2 cells; the rim must be inside the mesh. */
+/* The largest radius around the first source along one axis: the library keeps off the edge. */
+static double reach(int n, double size, double at) {
+    return 0.5 * (n - 3) * size - fabs(at);
+}
+
 static void check_initial(draft *d, const section *s, const scene *sc) {
     if (!require_one(d, s, INITIAL_RADIUS, INITIAL_TIME) || d->error_count ||
         !draft_has(s, INITIAL_RADIUS))
         return;
     const ilsa_mesh_def *m = &sc->mesh;
     double least = 2 * fmax(m->dx, m->dy);
-    double most = fmin(0.5 * (m->nx - 2) * m->dx - fabs(sc->sources[0].x),
-                       0.5 * (m->ny - 2) * m->dy - fabs(sc->sources[0].y));
+    double most =
+        fmin(reach(m->nx, m->dx, sc->sources[0].x), reach(m->ny, m->dy, sc->sources[0].y));
     double radius = s->values[INITIAL_RADIUS].number;
-    if (radius < least || radius > most)
+    if (radius >= least && radius < most)
+        return;
+    if (least < most)
         draft_range_error(d, s, INITIAL_RADIUS,
-                          "in %.10g .. %.10g: 2 cells or more, and inside the mesh", least, most);
+                          "at least %.10g, 2 cells, and under %.10g: inside the mesh", least, most);
+    else
+        draft_error(d, s->values[INITIAL_RADIUS].line, s->name, "radius",
+                    s->values[INITIAL_RADIUS].text,
+                    "must be at least %.10g, 2 cells, for which the mesh is too small around the "
+                    "source",
+                    least);
 }
 
 static void check_run(draft *d, const section *s) {
@@ -220,8 +306,10 @@ static void check_run(draft *d, const section *s) {
     if (!draft_require(d, s, RUN_T_END) || d->error_count)
         return;
     double t_end = s->values[RUN_T_END].number;
-    if (!rises(times) || (times->count && times->numbers[times->count - 1] > t_end))
-        draft_range_error(d, s, RUN_OUTPUT_TIMES, "rising, and at most t_end = %.10g", t_end);
+    if (first_fall(times))
+        fall_error(d, s, RUN_OUTPUT_TIMES, "rising");
+    else if (times->count && times->numbers[times->count - 1] > t_end)
+        draft_range_error(d, s, RUN_OUTPUT_TIMES, "at most t_end = %.10g", t_end);
 }
 
 /* A front that only toughness rules needs some. */
@@ -234,7 +322,6 @@ static void take_run(draft *d, scene *sc, section *s) {
     static const ilsa_tip_model tips[] = {ILSA_TIP_FULL, ILSA_TIP_TOUGHNESS_VISCOSITY,
                                           ILSA_TIP_TOUGHNESS};
     sc->t_end = s->values[RUN_T_END].number;
-    sc->t_end_line = s->values[RUN_T_END].line;
     sc->dt_initial = number_or(s, RUN_DT_INITIAL, 0);
     sc->dt_max = number_or(s, RUN_DT_MAX, 0);
     sc->level = (int)number_or(s, RUN_LEVEL, 3);
@@ -242,7 +329,6 @@ static void take_run(draft *d, scene *sc, section *s) {
     sc->tip = tips[(int)number_or(s, RUN_TIP, 0)];
     sc->threads = (int)number_or(s, RUN_THREADS, 1);
     sc->closure_width = number_or(s, RUN_CLOSURE_WIDTH, 0);
-    sc->output_line = s->values[RUN_OUTPUT_TIMES].line;
     sc->output_times = take_numbers(s, RUN_OUTPUT_TIMES, &sc->output_count);
     if (sc->output_times)
         return;
@@ -253,6 +339,14 @@ static void take_run(draft *d, scene *sc, section *s) {
     }
     sc->output_times[0] = sc->t_end;
     sc->output_count = 1;
+}
+
+static void take_lines(scene *sc, section *const *s) {
+    for (int i = 0; i < SECTION_COUNT; i++) {
+        sc->headings[i] = s[i]->line;
+        for (int k = 0; k < KEYS_MAX; k++)
+            sc->lines[i][k] = s[i]->values[k].line;
+    }
 }
 
 /* Checks that look at several keys come after those of single values, whose errors they'd repeat.
@@ -274,7 +368,7 @@ static void build(draft *d, scene *sc) {
     if (!d->error_count) {
         take_material(d, sc, s[SECTION_MATERIAL]);
         take_mesh(sc, s[SECTION_MESH]);
-        take_stress(sc, s[SECTION_STRESS]);
+        take_stress(d, sc, s[SECTION_STRESS]);
         take_sources(d, sc);
         take_run(d, sc, s[SECTION_RUN]);
     }
@@ -282,8 +376,7 @@ static void build(draft *d, scene *sc) {
     check_initial(d, s[SECTION_INITIAL], sc);
     sc->radius = number_or(s[SECTION_INITIAL], INITIAL_RADIUS, 0);
     sc->time = number_or(s[SECTION_INITIAL], INITIAL_TIME, 0);
-    sc->initial_line =
-        s[SECTION_INITIAL]->values[sc->radius > 0 ? INITIAL_RADIUS : INITIAL_TIME].line;
+    take_lines(sc, s);
 }
 
 int scene_read(const char *path, scene *sc, FILE *errors) {
@@ -300,19 +393,45 @@ int scene_read(const char *path, scene *sc, FILE *errors) {
     return good;
 }
 
+void scene_error(const scene *sc, FILE *errors, int part, int key, const char *format, ...) {
+    const key_def *def = &sections[part].keys[key];
+    int line = sc->lines[part][key];
+    va_list arguments;
+    fprintf(errors, "%s:%d: [%s] %s", sc->path, line ? line : sc->headings[part],
+            sections[part].name, def->name);
+    va_start(arguments, format);
+    vfprintf(errors, format, arguments);
+    va_end(arguments);
+    fputc('\n', errors);
+}
+
+/* The first step and every step must be felt by a clock that shows up to t. */
+static int moves_clock(const scene *sc, FILE *errors, int key, double dt, double t) {
+    if (dt == 0 || t + dt > t)
+        return 1;
+    scene_error(sc, errors, SECTION_RUN, key, " = %.10g: too small to move the clock on from %.10g",
+                dt, t);
+    return 0;
+}
+
 int scene_check_start(const scene *sc, double t_start, FILE *errors) {
-    draft d = {.path = sc->path, .errors = errors};
     const scene_source *first = &sc->sources[0];
     const char *after = "must be after the initial fracture's own time";
-    if (sc->t_end <= t_start)
-        draft_error(&d, sc->t_end_line, "run", "t_end", NULL, "%s, > %.10g", after, t_start);
-    else if (sc->output_times[0] <= t_start)
-        draft_error(&d, sc->output_line, "run", "output_times", NULL, "%s, > %.10g", after,
-                    t_start);
-    if (first->count > 1 && first->times[1] <= t_start)
-        draft_error(&d, first->line, "injection", "schedule", NULL, "the second t %s, > %.10g",
+    int good = 1;
+    if (sc->t_end <= t_start) {
+        scene_error(sc, errors, SECTION_RUN, RUN_T_END, ": %s, > %.10g", after, t_start);
+        good = 0;
+    } else if (sc->output_times[0] <= t_start) {
+        scene_error(sc, errors, SECTION_RUN, RUN_OUTPUT_TIMES, ": %s, > %.10g", after, t_start);
+        good = 0;
+    }
+    if (first->count > 1 && first->times[1] <= t_start) {
+        scene_error(sc, errors, SECTION_INJECTION, INJECTION_SCHEDULE, ": the second t %s, > %.10g",
                     after, t_start);
-    return d.error_count == 0;
+        good = 0;
+    }
+    return good & moves_clock(sc, errors, RUN_DT_INITIAL, sc->dt_initial, t_start) &
+           moves_clock(sc, errors, RUN_DT_MAX, sc->dt_max, sc->t_end);
 }
 
 void scene_free(scene *sc) {
@@ -323,6 +442,7 @@ void scene_free(scene *sc) {
     free(sc->sources);
     free(sc->interfaces);
     free(sc->sigma);
+    free(sc->log.file);
     free(sc->output_times);
     memset(sc, 0, sizeof *sc);
 }

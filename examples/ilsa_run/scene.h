@@ -2,6 +2,8 @@
 #ifndef ILSA_RUN_SCENE_H
 #define ILSA_RUN_SCENE_H
 
+#include "keys.h"
+
 #include <ilsa/ilsa.h>
 #include <stdio.h>
 
@@ -13,6 +15,15 @@ typedef struct scene_source {
     int line; /* of its rate or schedule, for messages */
 } scene_source;
 
+/* A stress log that the scene names. It is read after the scene, by stress_log_take. */
+typedef struct scene_log {
+    char *file; /* as in the scene; NULL: there is none */
+    int has_origin_depth;
+    double origin_depth; /* the depth of y = 0 */
+    int rows;            /* once it is read: how many, and the y of the lowest and the highest */
+    double bottom, top;
+} scene_log;
+
 typedef struct scene {
     const char *path;
     ilsa_material_def material;
@@ -20,7 +31,8 @@ typedef struct scene {
     ilsa_mesh_def mesh;
     ilsa_symmetry symmetry;
     int interface_count;
-    double *interfaces, *sigma; /* sigma: interface_count + 1 */
+    double *interfaces, *sigma; /* sigma: interface_count + 1; NULL until a log is read */
+    scene_log log;
     scene_source *sources;
     int source_count;
     double radius, time;              /* of the initial fracture; one of them is 0 */
@@ -30,7 +42,8 @@ typedef struct scene {
     int output_count;
     int level, coarsen, threads;
     ilsa_tip_model tip;
-    int symmetry_line, initial_line, t_end_line, output_line; /* for messages */
+    /* For messages: of the headings, and of the keys, 0 where one was not given. */
+    int headings[SECTION_COUNT], lines[SECTION_COUNT][KEYS_MAX];
 } scene;
 
 /*
@@ -40,9 +53,20 @@ typedef struct scene {
 int scene_read(const char *path, scene *s, FILE *errors);
 
 /*
- * Checks what only the started fracture can tell: that the times asked for lie after its own time.
+ * Checks what only the started fracture can tell: that the times asked for lie after its own time,
+ * and that the steps asked for move the clock on.
  */
 int scene_check_start(const scene *s, double t_start, FILE *errors);
+
+/* Says "file:line: [section] key" and the text. Where the key was not given: line of its heading.
+ */
+void scene_error(const scene *s, FILE *errors, int part, int key, const char *format, ...)
+    __attribute__((format(printf, 5, 6)));
+
+/* "injection" for source 0, "injection.2" for source 1. The name stands in a buffer of the caller.
+ */
+enum { SOURCE_NAME_SIZE = 32 };
+const char *scene_source_name(char *name, int source);
 
 void scene_free(scene *s);
 

@@ -3,6 +3,7 @@
 #include "outfile.h"
 
 #include <math.h>
+#include <string.h>
 
 typedef struct facts {
     ilsa_summary state;
@@ -11,10 +12,26 @@ typedef struct facts {
     ilsa_mesh_def mesh;
 } facts;
 
-static void put_run(FILE *s, const scene *sc, const facts *f, const char *ended) {
+/* The lines of a text, each under the values of the summary. */
+static void put_lines(FILE *s, const char *text) {
+    while (*text) {
+        size_t length = strcspn(text, "\n");
+        fprintf(s, "                      %.*s\n", (int)length, text);
+        text += length + (text[length] == '\n');
+    }
+}
+
+static void put_log(FILE *s, const scene_log *log) {
+    fprintf(s, "stress                %s: %d rows, y %.6g .. %.6g; beyond, the end values\n",
+            log->file, log->rows, log->bottom, log->top);
+}
+
+static void put_run(FILE *s, const scene *sc, const facts *f, ending ended) {
     fprintf(s, "scene                 %s\n", sc->path);
     fprintf(s, "library               libilsa %s\n", ilsa_version_string());
-    fprintf(s, "ended                 %s\n", ended);
+    fprintf(s, "ended                 %s\n", ended.words);
+    if (ended.reason)
+        put_lines(s, ended.reason);
     fprintf(s, "level                 %d (front moves %.3g cells a step, found to %.2g cells)\n",
             f->model.level, f->model.step_cells, f->model.tolerance);
     fprintf(s, "mesh                  %d x %d cells of %.6g x %.6g", f->mesh.nx, f->mesh.ny,
@@ -22,7 +39,10 @@ static void put_run(FILE *s, const scene *sc, const facts *f, const char *ended)
     if (f->state.total.coarsened)
         fprintf(s, ", coarsened %ld times from %.6g x %.6g", f->state.total.coarsened, sc->mesh.dx,
                 sc->mesh.dy);
-    fputs("\n\n", s);
+    fputc('\n', s);
+    if (sc->log.file)
+        put_log(s, &sc->log);
+    fputc('\n', s);
 }
 
 static void put_model(FILE *s, const scene *sc, const facts *f) {
@@ -97,8 +117,8 @@ static void put_times(FILE *s, const ilsa_profile *p, double wall_s) {
     fprintf(s, "  start and output    %.2f s\n", fmax(0, wall_s - library));
 }
 
-int summary_write(const char *directory, const scene *sc, const ilsa_solver *solver,
-                  const char *ended, double wall_s) {
+int summary_write(const char *directory, const scene *sc, const ilsa_solver *solver, ending ended,
+                  double wall_s) {
     facts f;
     outfile file;
     if (ilsa_get_summary(solver, &f.state) || ilsa_get_model(solver, &f.model) ||

@@ -4,8 +4,13 @@
 
 #include "scene.h"
 
-/* ended: how the run came to its end. 1, or 0 with a message on stderr. */
-int summary_write(const char *directory, const scene *sc, const ilsa_solver *solver,
-                  const char *ended, double wall_s);
+/* How a run came to its end, and the lines that say more of it or NULL. */
+typedef struct ending {
+    const char *words, *reason;
+} ending;
+
+/* 1, or 0 with a message on stderr. */
+int summary_write(const char *directory, const scene *sc, const ilsa_solver *solver, ending ended,
+                  double wall_s);
 
 #endif

@@ -1,9 +1,13 @@
 /*
- * The reader of scene files, given anything: it either reads a scene whose values are in their
- * ranges, without a word, or says what is wrong, a line each, and leaves nothing behind.
+ * The readers of scene files and of stress logs, given anything: each either reads a scene or a log
+ * whose values are in their ranges, without a word, or says what is wrong, a line each, and leaves
+ * nothing behind. A scene's own log is not opened: stress_log_take, which would, is not called.
  */
 #include "fuzz.h"
 #include "scene.h"
+
+/* The reader whole: of ilsa-run only what reads scenes is linked. */
+#include "profile.c" /* NOLINT(bugprone-suspicious-include) */
 
 #include <math.h>
 #include <stdio.h>
@@ -38,8 +42,9 @@ static void check_material(const ilsa_material_def *m) {
 }
 
 static void check_lists(const scene *sc) {
-    for (int i = 0; i <= sc->interface_count; i++)
-        FUZZ_EXPECT(isfinite(sc->sigma[i]));
+    FUZZ_EXPECT((sc->sigma != NULL) != (sc->log.file != NULL));
+    for (int i = 0; i <= sc->interface_count && sc->sigma; i++)
+        FUZZ_EXPECT(fabs(sc->sigma[i]) <= 1e60);
     for (int i = 1; i < sc->interface_count; i++)
         FUZZ_EXPECT(sc->interfaces[i] > sc->interfaces[i - 1]);
     FUZZ_EXPECT(sc->output_count >= 1 && sc->output_times[0] > 0);
@@ -63,7 +68,7 @@ static void check_scene(const scene *sc) {
 }
 
 static int is_empty(const scene *sc) {
-    return !sc->sources && !sc->sigma && !sc->interfaces && !sc->output_times;
+    return !sc->sources && !sc->sigma && !sc->interfaces && !sc->output_times && !sc->log.file;
 }
 
 /* Every line of what it said begins with the name of the file. */
@@ -74,11 +79,37 @@ static void check_messages(const char *said, const char *path) {
     }
 }
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
-    char path[32], *said = NULL;
+static void check_profile(const profile *p) {
+    FUZZ_EXPECT(p->count >= 2);
+    for (int i = 0; i < p->count; i++) {
+        FUZZ_EXPECT(fabs(p->place[i]) <= 1e60 && fabs(p->sigma[i]) <= 1e60);
+        FUZZ_EXPECT(i == 0 || p->place[i] > p->place[i - 1]);
+    }
+}
+
+static void read_as_profile(FILE *file, const char *path) {
+    char *said = NULL;
+    size_t length = 0;
+    profile p;
+    FILE *errors = open_memstream(&said, &length);
+    FUZZ_EXPECT(errors);
+    rewind(file);
+    int good = profile_read(file, path, &p, errors);
+    FUZZ_EXPECT(fflush(errors) == 0 && good == (length == 0));
+    FUZZ_EXPECT(good || (!p.place && !p.sigma && p.count == 0));
+    if (good)
+        check_profile(&p);
+    profile_free(&p);
+    fclose(errors);
+    check_messages(said, path);
+    free(said);
+}
+
+static void read_as_scene(const char *path) {
+    char *said = NULL;
     size_t length = 0;
     scene sc;
-    FILE *file = write_file(data, size, path), *errors = open_memstream(&said, &length);
+    FILE *errors = open_memstream(&said, &length);
     FUZZ_EXPECT(errors);
     int good = scene_read(path, &sc, errors);
     FUZZ_EXPECT(fflush(errors) == 0 && good == (length == 0));
@@ -91,6 +122,13 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     fclose(errors);
     check_messages(said, path);
     free(said);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+    char path[32];
+    FILE *file = write_file(data, size, path);
+    read_as_scene(path);
+    read_as_profile(file, path);
     fclose(file);
     return 0;
 }
