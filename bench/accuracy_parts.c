@@ -287,7 +287,7 @@ static void find_edges(const disc *d, const penny_solution *s, elasticity *e, do
             const double w = ilsai_asymptote_width(&s->scaled, s->V, distance);
             const self_term_front seen = {distance, f.cos_a, f.sin_a,
                                           ilsai_asymptote_exponent(&s->scaled, s->V, distance, w)};
-            edge[cell] = ilsai_elasticity_self_term(e, &seen).value;
+            edge[cell] = ilsai_elasticity_self_term(e, cell % d->nx, cell / d->nx, &seen).value;
         }
 }
 
@@ -300,7 +300,8 @@ typedef struct stiffness {
 static stiffness make_stiffness(const disc *d, const penny_solution *s, int completed) {
     stiffness k = {NULL, allocate((size_t)cells_of(d), sizeof *k.self_correction)};
     if (ilsai_elasticity_create(1, d->dx, d->dy, ILSA_PRODUCT_AUTO, &k.e) ||
-        ilsai_elasticity_set_box(k.e, d->nx, d->ny, MIRROR_NONE, MIRROR_NONE)) {
+        ilsai_elasticity_set_box(k.e, &(box){0, d->nx - 1, 0, d->ny - 1}, MIRROR_NONE,
+                                 MIRROR_NONE)) {
         fprintf(stderr, "no elasticity\n");
         exit(EXIT_FAILURE);
     }

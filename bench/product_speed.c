@@ -4,6 +4,7 @@
  */
 #include "base/clock.h"
 #include "common_worst.h"
+#include "elastic/dd_kernel.h"
 #include "elastic/elasticity.h"
 
 #include <math.h>
@@ -34,7 +35,7 @@ static direct make_direct(int bx, int by) {
     direct d = {bx, by, alloc_doubles((size_t)width * (size_t)height)};
     for (int j = 0; j < height; j++)
         for (int i = 0; i < width; i++)
-            d.kernel[j * width + i] = ilsai_kernel(i - bx + 1, j - by + 1, 1, 1);
+            d.kernel[j * width + i] = ilsai_dd_kernel(i - bx + 1, j - by + 1, 1, 1);
     return d;
 }
 
@@ -99,7 +100,7 @@ static double time_box(ilsa_product method, subject s, int bx, int by, mirror_ax
                        mirror_axis about_y, double *ready) {
     s.e = make(method);
     double start = ilsai_clock();
-    if (ilsai_elasticity_set_box(s.e, bx, by, about_x, about_y)) {
+    if (ilsai_elasticity_set_box(s.e, &(box){0, bx - 1, 0, by - 1}, about_x, about_y)) {
         ilsai_elasticity_destroy(&s.e);
         return NAN;
     }
@@ -192,16 +193,16 @@ static void print_row(int bx, int by) {
 }
 
 int main(void) {
-    static const int box[][2] = {{12, 12},   {16, 16},   {24, 24},   {32, 32},    {48, 48},
-                                 {64, 64},   {80, 80},   {96, 96},   {112, 112},  {128, 128},
-                                 {160, 160}, {192, 192}, {256, 256}, {384, 384},  {512, 512},
-                                 {32, 128},  {128, 32},  {20, 400},  {400, 20},   {33, 33},
-                                 {49, 49},   {65, 65},   {97, 97},   {1000, 1000}};
+    static const int size[][2] = {{12, 12},   {16, 16},   {24, 24},   {32, 32},    {48, 48},
+                                  {64, 64},   {80, 80},   {96, 96},   {112, 112},  {128, 128},
+                                  {160, 160}, {192, 192}, {256, 256}, {384, 384},  {512, 512},
+                                  {32, 128},  {128, 32},  {20, 400},  {400, 20},   {33, 33},
+                                  {49, 49},   {65, 65},   {97, 97},   {1000, 1000}};
     printf(
         "milliseconds per product; off: FFT (BLAS where there is none) against the direct sum\n");
     printf("%13s%9s%11s%11s%11s%11s%11s%11s%11s%11s\n", "box", "cells", "FFT", "half, x", "half, y",
            "quarter", "BLAS", "direct", "off", "new box");
-    for (size_t b = 0; b < sizeof box / sizeof *box; b++)
-        print_row(box[b][0], box[b][1]);
+    for (size_t b = 0; b < sizeof size / sizeof *size; b++)
+        print_row(size[b][0], size[b][1]);
     return 0;
 }

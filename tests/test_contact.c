@@ -1,6 +1,7 @@
 /* Closure: what a host sees of cells whose faces touch, after shut-in and under stress that rises.
  */
 #include "check.h"
+#include "elastic/dd_kernel.h"
 #include "elastic/elasticity.h"
 #include "host.h"
 
@@ -176,7 +177,7 @@ static double closure_stress(const ilsa_solver *solver, const host_scene *scene,
     for (int other = 0; other < nx * scene->mesh.ny; other++) {
         int di = abs(other % nx - cell % nx), dj = abs(other / nx - cell / nx);
         sum += width[other] != 0
-                   ? width[other] * ilsai_kernel(di, dj, scene->mesh.dx, scene->mesh.dy)
+                   ? width[other] * ilsai_dd_kernel(di, dj, scene->mesh.dx, scene->mesh.dy)
                    : 0;
     }
     return sum * scene->material.E_prime;

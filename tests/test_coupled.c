@@ -2,7 +2,9 @@
  * out cell by cell on the unfolded mesh with the kernel summed directly. */
 #include "base/tuning.h"
 #include "check.h"
+#include "elastic/dd_kernel.h"
 #include "failing.h"
+#include "flow/newtonian.h"
 #include "solve/coupled.h"
 #include "solve/gmres.h"
 #include "solve/jacobian.h"
@@ -24,7 +26,8 @@ typedef struct scene {
     grid g;
     int mirror; /* bit 0: about x = 0, bit 1: about y = 0 */
     size_t cells;
-    double E_prime, mu_prime, dt;
+    double E_prime, dt;
+    ilsa_material_def material; /* of which the viscosity counts */
     unsigned char *kind;
     double *width, *width_old, *pressure, *sigma, *source_term;
     double *kernel; /* |i|, |j| */
@@ -84,7 +87,7 @@ static scene make_scene(int nx, int ny, int mirror, int folded, uint64_t salt) {
     scene s = {.g = ilsai_grid(&def, folded & 1, folded >> 1), .mirror = mirror};
     s.cells = (size_t)nx * (size_t)ny;
     s.E_prime = 2;
-    s.mu_prime = 0.7;
+    s.material.mu_prime = 0.7;
     s.dt = 1.5;
     s.kind = calloc(s.cells, 1);
     s.width = zeros(s.cells);
@@ -94,7 +97,7 @@ static scene make_scene(int nx, int ny, int mirror, int folded, uint64_t salt) {
     s.source_term = zeros(s.cells);
     s.kernel = zeros(s.cells);
     for (int cell = 0; cell < (int)s.cells; cell++) {
-        s.kernel[cell] = s.E_prime * ilsai_kernel(cell % nx, cell / nx, def.dx, def.dy);
+        s.kernel[cell] = s.E_prime * ilsai_dd_kernel(cell % nx, cell / nx, def.dx, def.dy);
     }
     assert_non_null(s.kind);
     ilsa_status status =
@@ -151,7 +154,8 @@ static double residual_at(const scene *s, const double *width, const double *pre
         }
         double edge = 0.5 * (width[cell] + width[other]), h = n < 2 ? s->g.dx : s->g.dy;
         double mean = 0.5 * edge + 0.25 * (s->width_old[cell] + s->width_old[other]);
-        sum += mean * edge * edge * (pressure[other] - pressure[cell]) / (s->mu_prime * h * h);
+        sum += mean * edge * edge * (pressure[other] - pressure[cell]) /
+               (s->material.mu_prime * h * h);
     }
     return width[cell] - s->width_old[cell] - s->dt * sum - s->source_term[cell];
 }
@@ -219,13 +223,19 @@ static void make_matrix(scene *s, matrix *at) {
     assert_int_equal(ilsai_unknowns_create(&at->a, &def), ILSA_OK);
     assert_int_equal(ilsai_unknowns_set(&at->a, &s->g, b, s->kind), ILSA_OK);
     assert_int_equal(ilsai_lubrication_reserve(&at->f, at->a.count), ILSA_OK);
-    ilsai_lubrication_set(&at->f, &at->a, &s->g, s->width, s->width_old, s->pressure,
-                          s->dt / s->mu_prime);
+    const flow_state state = {.g = &s->g,
+                              .cells = &at->a,
+                              .material = &s->material,
+                              .dt = s->dt,
+                              .width = s->width,
+                              .width_old = s->width_old,
+                              .pressure = s->pressure};
+    ilsai_newtonian.set_fluxes(&at->f, &state);
     box part = ilsai_box_fold(&s->g, b);
-    assert_int_equal(ilsai_elasticity_set_box(s->e, part.x1 - part.x0 + 1, part.y1 - part.y0 + 1,
-                                              ilsai_grid_about_x(&s->g), ilsai_grid_about_y(&s->g)),
-                     ILSA_OK);
-    at->m = (jacobian){.g = &s->g, .a = &at->a, .f = &at->f, .e = s->e};
+    assert_int_equal(
+        ilsai_elasticity_set_box(s->e, &part, ilsai_grid_about_x(&s->g), ilsai_grid_about_y(&s->g)),
+        ILSA_OK);
+    at->m = (jacobian){.g = &s->g, .cells = &at->a, .lubrication = &at->f, .elastic = s->e};
     at->m.width = zeros(s->cells);
     at->m.pressure = zeros(s->cells);
     at->m.sensitivity = s->sensitivity;
@@ -388,7 +398,7 @@ static void close_some(matrix *at) {
     for (int k = 0; k < at->a.count; k++) {
         if (at->a.unknown[k] == UNKNOWN_WIDTH) {
             at->a.unknown[k] = k % 5 == 0   ? UNKNOWN_CONTACT
-                               : k % 7 == 0 ? UNKNOWN_LEAK
+                               : k % 7 == 0 ? UNKNOWN_RETAINED
                                             : UNKNOWN_WIDTH;
         }
     }
@@ -506,7 +516,7 @@ static void preconditioner_is_linear_and_serves(void **state) {
 
 static coupled_problem pose(scene *s, ilsa_linear_solver linear, double tolerance) {
     return (coupled_problem){.g = &s->g,
-                             .e = s->e,
+                             .elastic = s->e,
                              .footprint = s->footprint,
                              .kind = s->kind,
                              .sigma = s->sigma,
@@ -517,7 +527,8 @@ static coupled_problem pose(scene *s, ilsa_linear_solver linear, double toleranc
                              .width = s->width,
                              .pressure = s->pressure,
                              .dt = s->dt,
-                             .mu_prime = s->mu_prime,
+                             .fluid = &ilsai_newtonian,
+                             .material = &s->material,
                              .linear = linear,
                              .tolerance = tolerance};
 }
@@ -779,7 +790,7 @@ static void change_units(scene *s, double width, double length, double stress, d
     s->g.dx *= length;
     s->g.dy *= length;
     s->dt *= time;
-    s->mu_prime *= stress * time * width * width / (length * length);
+    s->material.mu_prime *= stress * time * width * width / (length * length);
     ilsai_elasticity_destroy(&s->e);
     ilsa_status status = ilsai_elasticity_create(s->E_prime * stress * length / width, s->g.dx,
                                                  s->g.dy, ILSA_PRODUCT_AUTO, &s->e);
@@ -892,7 +903,7 @@ static void spoil_dt(scene *s) {
 }
 
 static void spoil_viscosity(scene *s) {
-    s->mu_prime = NAN;
+    s->material.mu_prime = NAN;
 }
 
 /* A tip cell that no fluid can reach has no pressure. */

@@ -432,9 +432,9 @@ static ilsa_status box_within(size_t base, size_t more) {
         int limited = !limit_to(base);
         fill_heap();
         limited = limited && !limit_to(base + more);
-        status = status || !limited
-                     ? ILSA_ERR_STATE
-                     : ilsai_elasticity_set_box(e, 300, 300, MIRROR_NONE, MIRROR_NONE);
+        status = status || !limited ? ILSA_ERR_STATE
+                                    : ilsai_elasticity_set_box(e, &(box){0, 299, 0, 299},
+                                                               MIRROR_NONE, MIRROR_NONE);
         _exit(-status);
     }
     assert_int_equal(waitpid(child, &result, 0), child);

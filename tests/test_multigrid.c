@@ -3,6 +3,7 @@
  * the near field of the elasticity.
  */
 #include "check.h"
+#include "elastic/dd_kernel.h"
 #include "elastic/elasticity.h"
 #include "solve/multigrid.h"
 #include "solve/near_field.h"
@@ -136,11 +137,11 @@ static void nothing_in_dry_cells(void **state) {
 static double near_error(int nx, int ny, double aspect, int mirror) {
     near_field f = {0};
     assert_int_equal(ilsai_near_field_shape(&f, nx, ny), ILSA_OK);
-    f.mirror_x = f.mirror_y = mirror;
-    f.self = ilsai_kernel(0, 0, 1, aspect);
-    f.beside = ilsai_kernel(1, 0, 1, aspect);
-    f.above = ilsai_kernel(0, 1, 1, aspect);
-    f.corner = ilsai_kernel(1, 1, 1, aspect);
+    f.about_x = f.about_y = mirror < 0 ? MIRROR_NONE : mirror == 0 ? MIRROR_EDGE : MIRROR_CENTRE;
+    f.self = ilsai_dd_kernel(0, 0, 1, aspect);
+    f.beside = ilsai_dd_kernel(1, 0, 1, aspect);
+    f.above = ilsai_dd_kernel(0, 1, 1, aspect);
+    f.corner = ilsai_dd_kernel(1, 1, 1, aspect);
     size_t stride = (size_t)f.stride, size = stride * ((size_t)ny + 2);
     double *x = calloc(size, sizeof *x), error = NOTHING_YET, most = 0;
     assert_non_null(x);

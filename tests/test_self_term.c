@@ -3,6 +3,7 @@
  * penny-shaped fractures whose pressure and width are known.
  */
 #include "check.h"
+#include "elastic/dd_kernel.h"
 #include "elastic/elasticity.h"
 #include "elastic/self_term.h"
 #include "tip/asymptote.h"
@@ -170,13 +171,13 @@ static double worst_width(const circle *c, int use_term) {
         w[a] = pressure_at(c, r);
         for (int k = 0; k < count; k++)
             if (!list[k].full)
-                w[a] -=
-                    ilsai_kernel(p->i - list[k].i, p->j - list[k].j, c->dx, c->dy) * list[k].mean;
+                w[a] -= ilsai_dd_kernel(p->i - list[k].i, p->j - list[k].j, c->dx, c->dy) *
+                        list[k].mean;
         for (int b = 0; b < n; b++) {
             /* NOLINTNEXTLINE(clang-analyzer-core.uninitialized.ArraySubscript): n were filled */
             const cell *q = &list[number[b]];
             matrix[(size_t)a * (size_t)n + (size_t)b] =
-                ilsai_kernel(p->i - q->i, p->j - q->j, c->dx, c->dy);
+                ilsai_dd_kernel(p->i - q->i, p->j - q->j, c->dx, c->dy);
         }
         self_term_front f = seen(s, atan2(y, x), exponent_at(c, s));
         if (use_term && s < 2.5 * fmax(c->dx, c->dy))

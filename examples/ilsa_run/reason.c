@@ -32,7 +32,7 @@ int reason_outside(const scene *sc, const ilsa_solver *solver, FILE *out) {
     const unsigned char *kind;
     double t;
     int count = 0;
-    if (ilsa_get_mesh_def(solver, &mesh) || ilsa_get_footprint(solver, &kind) ||
+    if (ilsa_get_mesh_def(solver, &mesh) || ilsa_get_cell_kinds(solver, &kind) ||
         ilsa_get_time(solver, &t))
         return 0;
     for (int i = 0; i < sc->source_count; i++) {

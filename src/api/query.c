@@ -169,7 +169,7 @@ ilsa_status ilsa_get_model(const ilsa_solver *solver, ilsa_model *out) {
                                     : g.mirror_x             ? ILSA_SYMMETRY_X
                                     : g.mirror_y             ? ILSA_SYMMETRY_Y
                                                              : ILSA_SYMMETRY_NONE,
-                        .product = ilsai_elasticity_method(solver->numerics.elastic),
+                        .product = solver->numerics.elastic->product,
                         .level = m->options.level,
                         .threads = m->options.threads > 1 ? m->options.threads : 1,
                         .step_cells = solver->numerics.step_cells,

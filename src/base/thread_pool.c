@@ -1,29 +1,30 @@
 #include "base/thread_pool.h"
 
 #include "base/clock.h"
+#include "base/memory.h"
 #include <pthread.h>
 #include <sched.h>
 #include <signal.h>
 #include <stdatomic.h>
+#include <stdbool.h>
 #include <stdint.h>
-#include <stdlib.h>
 
 /* Parts of a loop per thread: uneven turns, and threads that come late, even out. */
-#define TEAM_PARTS 4
+#define POOL_PARTS 4
 /*
  * Seconds that a thread looks for work before it goes to sleep. Longer than what a step does
  * between two loops: a core that idles, a virtual one above all, takes as long to wake up.
  */
-#define TEAM_AWAKE 1e-3
+#define POOL_AWAKE 1e-3
 /* Looks at whether the others are done before the caller gives way to them. */
-#define TEAM_LOOKS 2000
+#define POOL_LOOKS 2000
 
 #if defined(__x86_64__) || defined(__i386__)
-#define team_pause() __builtin_ia32_pause()
+#define pool_pause() __builtin_ia32_pause()
 #elif defined(__aarch64__)
-#define team_pause() __asm__ volatile("yield")
+#define pool_pause() __asm__ volatile("yield")
 #else
-#define team_pause() ((void)0)
+#define pool_pause() ((void)0)
 #endif
 
 struct thread_pool {
@@ -38,7 +39,7 @@ struct thread_pool {
     pthread_mutex_t lock;
     pthread_cond_t news;
     atomic_int asleep; /* threads that wait for news */
-    atomic_int ending;
+    atomic_bool ending;
     int workers;
     pthread_t worker[];
 };
@@ -60,7 +61,7 @@ static int end_of(uint_least64_t offer) {
  * Takes a part, -1 if there is none. The caller takes the first one and the others the last: in
  * one loop after the other the same threads work on about the same turns.
  */
-static int take(thread_pool *t, int caller) {
+static int take(thread_pool *t, bool caller) {
     uint_least64_t offer = atomic_load(&t->offer), rest;
     do {
         if (first_of(offer) == end_of(offer)) {
@@ -75,14 +76,14 @@ static int begin_of(const thread_pool *t, int part) {
     return (int)((int64_t)t->count * part / t->parts);
 }
 
-static void work(thread_pool *t, int caller) {
+static void work(thread_pool *t, bool caller) {
     for (int part = take(t, caller); part >= 0; part = take(t, caller)) {
         t->function(t->context, begin_of(t, part), begin_of(t, part + 1));
         atomic_fetch_sub(&t->unfinished, 1);
     }
 }
 
-static int has_news(thread_pool *t) {
+static bool has_news(thread_pool *t) {
     uint_least64_t offer = atomic_load(&t->offer);
     return first_of(offer) != end_of(offer) || atomic_load(&t->ending);
 }
@@ -109,9 +110,9 @@ static void wake(thread_pool *t) {
 static void *worker_main(void *argument) {
     thread_pool *t = argument;
     while (!atomic_load(&t->ending)) {
-        work(t, 0);
-        for (double start = ilsai_clock(); !has_news(t) && ilsai_clock() - start < TEAM_AWAKE;) {
-            team_pause();
+        work(t, false);
+        for (double start = ilsai_clock(); !has_news(t) && ilsai_clock() - start < POOL_AWAKE;) {
+            pool_pause();
         }
         if (!has_news(t)) {
             sleep_until_news(t);
@@ -120,42 +121,42 @@ static void *worker_main(void *argument) {
     return NULL;
 }
 
-/* Signals are the host's: its own threads get them. */
-static int start_workers(thread_pool *t, int count) {
+/* Signals are the host's: its own threads get them. False where a thread cannot be started. */
+static bool start_workers(thread_pool *t, int count) {
     sigset_t all, own;
-    int failed = 0;
+    bool failed = false;
     sigfillset(&all);
     if (pthread_sigmask(SIG_SETMASK, &all, &own)) {
-        return -1;
+        return false;
     }
     while (!failed && t->workers < count) {
-        failed = pthread_create(&t->worker[t->workers], NULL, worker_main, t);
+        failed = pthread_create(&t->worker[t->workers], NULL, worker_main, t) != 0;
         t->workers += !failed;
     }
     pthread_sigmask(SIG_SETMASK, &own, NULL);
-    return failed ? -1 : 0;
+    return !failed;
 }
 
 thread_pool *ilsai_thread_pool_create(int threads) {
     size_t workers = (size_t)threads - 1;
-    thread_pool *t = calloc(1, sizeof *t + workers * sizeof *t->worker);
+    thread_pool *t = ilsai_allocate_zeroed(1, sizeof *t + workers * sizeof *t->worker);
     if (!t) {
         return NULL;
     }
     atomic_init(&t->offer, 0);
     atomic_init(&t->unfinished, 0);
     atomic_init(&t->asleep, 0);
-    atomic_init(&t->ending, 0);
+    atomic_init(&t->ending, false);
     if (pthread_mutex_init(&t->lock, NULL)) {
-        free(t);
+        ilsai_release(t);
         return NULL;
     }
     if (pthread_cond_init(&t->news, NULL)) {
         pthread_mutex_destroy(&t->lock);
-        free(t);
+        ilsai_release(t);
         return NULL;
     }
-    if (start_workers(t, (int)workers) != 0) {
+    if (!start_workers(t, (int)workers)) {
         ilsai_thread_pool_destroy(&t);
     }
     return t;
@@ -165,22 +166,22 @@ void ilsai_thread_pool_destroy(thread_pool **t) {
     if (!*t) {
         return;
     }
-    atomic_store(&(*t)->ending, 1);
+    atomic_store(&(*t)->ending, true);
     wake(*t);
     for (int k = 0; k < (*t)->workers; k++) {
         pthread_join((*t)->worker[k], NULL);
     }
     pthread_cond_destroy(&(*t)->news);
     pthread_mutex_destroy(&(*t)->lock);
-    free(*t);
+    ilsai_release(*t);
     *t = NULL;
 }
 
 /* Threads that still have a part are at work: they need no more than their turn on a core. */
 static void wait_for_others(thread_pool *t) {
     for (int look = 0; atomic_load(&t->unfinished) > 0; look++) {
-        if (look < TEAM_LOOKS) {
-            team_pause();
+        if (look < POOL_LOOKS) {
+            pool_pause();
         } else {
             sched_yield();
         }
@@ -189,7 +190,7 @@ static void wait_for_others(thread_pool *t) {
 
 void ilsai_thread_pool_run(thread_pool *t, pool_function *function, void *context, int count,
                            int least) {
-    int most = t ? TEAM_PARTS * (t->workers + 1) : 1;
+    int most = t ? POOL_PARTS * (t->workers + 1) : 1;
     int parts = t && count / least < most ? count / least : most;
     if (parts < 2) {
         function(context, 0, count);
@@ -203,6 +204,6 @@ void ilsai_thread_pool_run(thread_pool *t, pool_function *function, void *contex
     uint_least64_t loop = (atomic_load(&t->offer) >> 32) + 1;
     atomic_store(&t->offer, offer_of(loop, 0, (uint_least64_t)parts));
     wake(t);
-    work(t, 1);
+    work(t, true);
     wait_for_others(t);
 }

@@ -17,8 +17,9 @@ thread_pool *ilsai_thread_pool_create(int threads);
 void ilsai_thread_pool_destroy(thread_pool **t);
 
 /*
- * Runs turns 0 .. count - 1 in parts of at least `least` turns, all of them on return. A NULL team,
- * and a loop too short for two parts, runs in the caller. One caller at a time.
+ * Runs turns 0 .. count - 1 in parts of at least `least` turns, all of them on return. Without
+ * a pool (NULL), and where the loop is too short for two parts, the caller runs it alone. One
+ * caller at a time.
  */
 void ilsai_thread_pool_run(thread_pool *t, pool_function *function, void *context, int count,
                            int least);

@@ -1,13 +1,14 @@
 #include "base/unknowns.h"
 
+#include "base/error.h"
+#include "base/memory.h"
 #include <ilsa/solver.h>
-#include <stdlib.h>
 #include <string.h>
 
 ilsa_status ilsai_unknowns_create(unknowns *a, const ilsa_mesh_def *mesh) {
     memset(a, 0, sizeof *a);
     a->mesh_cells = (size_t)mesh->nx * (size_t)mesh->ny;
-    a->number = malloc(a->mesh_cells * sizeof *a->number);
+    a->number = ilsai_allocate(a->mesh_cells, sizeof *a->number);
     if (!a->number) {
         return ILSA_ERR_MEMORY;
     }
@@ -18,29 +19,11 @@ ilsa_status ilsai_unknowns_create(unknowns *a, const ilsa_mesh_def *mesh) {
 }
 
 void ilsai_unknowns_destroy(unknowns *a) {
-    free(a->cell);
-    free(a->unknown);
-    free(a->neighbour);
-    free(a->number);
+    ilsai_release(a->cell);
+    ilsai_release(a->unknown);
+    ilsai_release(a->neighbour);
+    ilsai_release(a->number);
     memset(a, 0, sizeof *a);
-}
-
-static ilsa_status reserve(unknowns *a, size_t count) {
-    if (count <= (size_t)a->capacity) {
-        return ILSA_OK;
-    }
-    size_t capacity = count + count / 2 + 64;
-    int *cell = realloc(a->cell, capacity * sizeof *cell);
-    a->cell = cell ? cell : a->cell;
-    unsigned char *unknown = realloc(a->unknown, capacity);
-    a->unknown = unknown ? unknown : a->unknown;
-    int *neighbour = realloc(a->neighbour, GRID_FACES * capacity * sizeof *neighbour);
-    a->neighbour = neighbour ? neighbour : a->neighbour;
-    if (!cell || !unknown || !neighbour) {
-        return ILSA_ERR_MEMORY;
-    }
-    a->capacity = (int)capacity;
-    return ILSA_OK;
 }
 
 static void forget(unknowns *a) {
@@ -89,11 +72,12 @@ static void find_neighbours(unknowns *a, const grid *g) {
 ilsa_status ilsai_unknowns_set(unknowns *a, const grid *g, const box *footprint,
                                const unsigned char *kind) {
     box part = ilsai_box_fold(g, footprint);
-    size_t size = ilsai_box_columns(&part) * ilsai_box_rows(&part);
+    const grown_array arrays[] = {ILSAI_GROWN(a->cell),
+                                  ILSAI_GROWN(a->unknown),
+                                  {&a->neighbour, GRID_FACES * sizeof *a->neighbour}};
     forget(a);
-    if (reserve(a, size) != ILSA_OK) {
-        return ILSA_ERR_MEMORY;
-    }
+    ILSAI_TRY(ilsai_grow(ilsai_box_columns(&part) * ilsai_box_rows(&part), &a->capacity, arrays,
+                         sizeof arrays / sizeof *arrays));
     a->footprint = *footprint;
     number_cells(a, g, kind, &part);
     find_neighbours(a, g);

@@ -9,13 +9,14 @@
 /* What the coupled solve finds in an unknowns cell; the width of the others is given. */
 enum {
     UNKNOWN_WIDTH,    /* an open channel cell; its pressure follows from the widths */
-    UNKNOWN_LEAK,     /* a cell that drains, see contact.h: less than the full leak-off */
+    UNKNOWN_RETAINED, /* a draining cell: the part of its full leak-off that stays in it */
     UNKNOWN_PRESSURE, /* a tip cell */
     UNKNOWN_CONTACT   /* a closed cell, see contact.h: the pressure */
 };
 
 typedef struct unknowns {
-    int count, capacity;
+    int count;
+    size_t capacity;
     int *cell;              /* mesh index of each */
     unsigned char *unknown; /* when set: UNKNOWN_PRESSURE in tip cells, elsewhere UNKNOWN_WIDTH */
     int *neighbour;         /* GRID_FACES per cell: number of the numbered cell there, or -1 */

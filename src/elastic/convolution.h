@@ -1,8 +1,10 @@
 /*
- * Convolution of a box of cells, and of its images where it is mirrored, with a kernel that is even
- * in x and in y, by real 2-D transforms of the box.
- * The library is compiled with one of convolution_fftw.c (FFTW, or MKL behind the same calls) and
- * convolution_none.c (none of these may then be called but ilsai_fft_available).
+ * Convolution of a box of cells, and of its images where it is one side of a mirror image, with a
+ * kernel that is even in x and in y. The product of a translation-invariant elasticity rests on it.
+ *
+ * Each way to compute it is a table of functions. There are two: transforms by FFTW, or by MKL
+ * behind FFTW's calls (convolution_fftw.c), and matrix products by BLAS (convolution_blas.c). The
+ * Makefile compiles convolution_none.c in the place of the first where there is no FFT.
  */
 #ifndef ILSAI_CONVOLUTION_H
 #define ILSAI_CONVOLUTION_H
@@ -11,26 +13,32 @@
 #include "base/thread_pool.h"
 #include <stddef.h>
 
-typedef struct fft fft;
+typedef struct convolution_method {
+    const char *name;
 
-/* Nonzero if there is a transform. */
-int ilsai_fft_available(void);
+    /*
+     * Makes ready for boxes of up to cx by cy cells. Both are even, and an FFT is fast where they
+     * have small prime factors. The kernel is given row by row for all offsets that cells of such a
+     * box have among each other and to images, see base/mirror.h. NULL when memory does not
+     * suffice.
+     */
+    void *(*create)(int cx, int cy, mirror_axis about_x, mirror_axis about_y, const double *kernel);
 
-/*
- * For boxes of up to cx by cy cells, padded to 2 cx by 2 cy, which should have small prime
- * factors. The kernel is given row by row for all offsets that there are, see mirror.h. NULL when
- * memory does not suffice.
- */
-fft *ilsai_fft_create(int cx, int cy, mirror_axis about_x, mirror_axis about_y,
-                      const double *kernel);
-void ilsai_fft_destroy(fft **f);
+    /*
+     * Sets p to the convolution of the kernel with w and its images, on a box of bx <= cx by
+     * by <= cy cells. Rows of w and of p are stride numbers apart. Every bit of p is a function of
+     * cx, cy, the axes, the kernel and w. The threads may share the work. Allocates nothing.
+     */
+    void (*apply)(void *made, thread_pool *threads, int bx, int by, const double *w, double *p,
+                  size_t stride);
 
-/*
- * p = kernel * (w and its images) on a box of bx <= cx by by <= cy cells, rows of both arrays
- * stride apart; every bit of p is a function of cx, cy and w. The team shares the work. Allocates
- * nothing.
- */
-void ilsai_fft_convolve(fft *f, thread_pool *threads, int bx, int by, const double *w, double *p,
-                        size_t stride);
+    /* Releases what create has made. */
+    void (*destroy)(void *made);
+} convolution_method;
+
+/* NULL where the library was built without an FFT. */
+extern const convolution_method *const ilsai_convolution_fft;
+
+extern const convolution_method *const ilsai_convolution_blas;
 
 #endif

@@ -1,7 +1,8 @@
 #include "elastic/convolution.h"
 
+#include "base/memory.h"
 #include <fftw3.h>
-#include <stdlib.h>
+#include <stdbool.h>
 #include <string.h>
 
 /* Rows or columns that are transformed at a time, whoever does it: the bits depend on it. */
@@ -21,8 +22,8 @@ typedef struct batch {
  * in place. They are twice the work of rows, and cost more the longer they are: a box that is
  * higher than wide is turned (up to half of the time).
  */
-struct fft {
-    int turned; /* x and y below are y and x of the caller */
+typedef struct fft {
+    bool turned; /* x and y below are y and x of the caller */
     int cx, cy;
     mirror_axis about_x, about_y;
     double *rows;       /* cy x 2 cx: the box, zeros behind it */
@@ -31,11 +32,7 @@ struct fft {
     double *spectrum;   /* by 1 / (4 cx cy), part by part: (cy + 1) x `terms` x columns */
     int terms;
     batch rows_there, columns_there, columns_back, rows_back;
-};
-
-int ilsai_fft_available(void) {
-    return 1;
-}
+} fft;
 
 /*
  * The spectrum. Without images a coefficient U of the widths is multiplied by the kernel's T(k, l),
@@ -77,7 +74,7 @@ static size_t half_length(const fft *f) {
     return (size_t)f->cx + 1;
 }
 
-static int allocate(fft *f) {
+static bool allocate(fft *f) {
     size_t cy = (size_t)f->cy;
     f->rows = fftw_alloc_real(cy * row_length(f));
     f->half = fftw_alloc_complex(2 * cy * half_length(f));
@@ -96,7 +93,7 @@ static void make_planner_safe(void) {
 /* Estimated plans are the same in every run, and with them the bits of a product. */
 enum { FFT_FLAGS = FFTW_ESTIMATE | FFTW_DESTROY_INPUT };
 
-static fftw_plan plan_rows(fft *f, int count, int back) {
+static fftw_plan plan_rows(fft *f, int count, bool back) {
     int mx = 2 * f->cx, h = f->cx + 1;
     return back ? fftw_plan_many_dft_c2r(1, &mx, count, f->half, NULL, 1, h, f->rows, NULL, 1, mx,
                                          FFT_FLAGS)
@@ -104,15 +101,15 @@ static fftw_plan plan_rows(fft *f, int count, int back) {
                                          FFT_FLAGS);
 }
 
-static fftw_plan plan_columns(fft *f, int count, int back) {
+static fftw_plan plan_columns(fft *f, int count, bool back) {
     int my = 2 * f->cy, h = f->cx + 1;
     return fftw_plan_many_dft(1, &my, count, back ? f->full : f->half, NULL, h, 1,
                               back ? f->half : f->full, NULL, h, 1,
                               back ? FFTW_BACKWARD : FFTW_FORWARD, FFT_FLAGS);
 }
 
-static int plan_batch(fft *f, batch *b, fftw_plan (*make)(fft *f, int count, int back), int count,
-                      int back) {
+static bool plan_batch(fft *f, batch *b, fftw_plan (*make)(fft *f, int count, bool back), int count,
+                       bool back) {
     int whole = count / FFT_PART, rest = count % FFT_PART;
     b->part = whole ? make(f, FFT_PART, back) : NULL;
     b->rest = rest ? make(f, rest, back) : NULL;
@@ -127,22 +124,23 @@ static int plan_batch(fft *f, batch *b, fftw_plan (*make)(fft *f, int count, int
 #define FFT_PLANNER_BYTES         ((size_t)512 << 10)
 #define FFT_PLANNER_BYTES_A_POINT ((size_t)64)
 
-static int planner_has_memory(const fft *f) {
+static bool planner_has_memory(const fft *f) {
     size_t points = 2 * ((size_t)f->cx + (size_t)f->cy);
-    void *volatile room = malloc(FFT_PLANNER_BYTES + FFT_PLANNER_BYTES_A_POINT * points);
-    int there = room != NULL;
-    free(room);
+    void *volatile room = ilsai_allocate(FFT_PLANNER_BYTES + FFT_PLANNER_BYTES_A_POINT * points, 1);
+    bool there = room != NULL;
+    ilsai_release(room);
     return there;
 }
 
-static int plan(fft *f) {
-    if (!planner_has_memory(f))
-        return 0;
+static bool plan(fft *f) {
+    if (!planner_has_memory(f)) {
+        return false;
+    }
     make_planner_safe();
-    return plan_batch(f, &f->rows_there, plan_rows, f->cy, 0) &&
-           plan_batch(f, &f->columns_there, plan_columns, f->cx + 1, 0) &&
-           plan_batch(f, &f->columns_back, plan_columns, f->cx + 1, 1) &&
-           plan_batch(f, &f->rows_back, plan_rows, f->cy, 1);
+    return plan_batch(f, &f->rows_there, plan_rows, f->cy, false) &&
+           plan_batch(f, &f->columns_there, plan_columns, f->cx + 1, false) &&
+           plan_batch(f, &f->columns_back, plan_columns, f->cx + 1, true) &&
+           plan_batch(f, &f->rows_back, plan_rows, f->cy, true);
 }
 
 /* Parts of a batch. */
@@ -195,15 +193,16 @@ static steps steps_of(const fft *f, size_t stride) {
 }
 
 static void gather(double *row, const double *from, size_t step, size_t count) {
-    for (size_t i = 0; i < count; i++)
+    for (size_t i = 0; i < count; i++) {
         row[i] = from[i * step];
+    }
 }
 
 /*
  * A row of the kernel, or of its one-sided part, in wrapped order. Offset cx does not occur in a
  * box, nor 2 cx - 1 between a cell and an image: they count as zero.
  */
-static void lay_out_kernel_row(const fft *f, const double *kernel, size_t step, int one_sided,
+static void lay_out_kernel_row(const fft *f, const double *kernel, size_t step, bool one_sided,
                                double *row) {
     size_t cx = (size_t)f->cx, mx = row_length(f);
     if (one_sided) {
@@ -213,31 +212,34 @@ static void lay_out_kernel_row(const fft *f, const double *kernel, size_t step, 
     }
     gather(row, kernel, step, cx);
     row[cx] = 0;
-    for (size_t i = 1; i < cx; i++)
+    for (size_t i = 1; i < cx; i++) {
         row[mx - i] = row[i];
+    }
 }
 
 /* Transforms cy rows of the kernel, row `first` and those that follow, into the upper half. */
-static void transform_kernel_rows(fft *f, const double *kernel, size_t first, int one_sided) {
+static void transform_kernel_rows(fft *f, const double *kernel, size_t first, bool one_sided) {
     size_t cy = (size_t)f->cy, mx = row_length(f);
     size_t columns = (size_t)ilsai_mirror_offsets(f->about_x, f->cx);
     size_t end = (size_t)ilsai_mirror_offsets(f->about_y, f->cy);
     steps at = steps_of(f, f->turned ? end : columns);
     for (size_t j = 0; j < cy; j++) {
         double *row = f->rows + j * mx;
-        if (first + j < end)
+        if (first + j < end) {
             lay_out_kernel_row(f, kernel + (first + j) * at.y, at.x, one_sided, row);
-        else
+        } else {
             memset(row, 0, mx * sizeof *row);
+        }
     }
-    for (int part = 0; part < parts_of(f->cy); part++)
+    for (int part = 0; part < parts_of(f->cy); part++) {
         rows_there(f, part);
+    }
 }
 
 /* The spectrum of the kernel into `full`, one-sided in x, in y, or not. */
-static void transform_kernel(fft *f, const double *kernel, int one_sided_x, int one_sided_y) {
+static void transform_kernel(fft *f, const double *kernel, bool one_sided_x, bool one_sided_y) {
     size_t cy = (size_t)f->cy, h = half_length(f);
-    size_t first = one_sided_y && f->about_y == MIRROR_EDGE;
+    size_t first = one_sided_y && f->about_y == MIRROR_EDGE ? 1 : 0;
     fftw_complex *lower = f->half + cy * h;
     if (one_sided_y) {
         transform_kernel_rows(f, kernel, cy + first, one_sided_x);
@@ -246,11 +248,13 @@ static void transform_kernel(fft *f, const double *kernel, int one_sided_x, int 
     transform_kernel_rows(f, kernel, first, one_sided_x);
     if (!one_sided_y) {
         memset(lower, 0, h * sizeof *lower);
-        for (size_t j = 1; j < cy; j++)
+        for (size_t j = 1; j < cy; j++) {
             memcpy(f->half + (2 * cy - j) * h, f->half + j * h, h * sizeof *lower);
+        }
     }
-    for (int part = 0; part < parts_of(f->cx + 1); part++)
+    for (int part = 0; part < parts_of(f->cx + 1); part++) {
         columns_there(f, part);
+    }
 }
 
 /*
@@ -258,7 +262,7 @@ static void transform_kernel(fft *f, const double *kernel, int one_sided_x, int 
  * and the lower row. It multiplies conjugates if it is one-sided in x, and goes from row to row if
  * it is so in one direction only.
  */
-static void add_to_matrix(double *m, size_t step, int one_sided_x, int one_sided_y,
+static void add_to_matrix(double *m, size_t step, bool one_sided_x, bool one_sided_y,
                           const double *upper, const double *lower) {
     double sign = one_sided_x ? -1 : 1;
     if (one_sided_x != one_sided_y) {
@@ -283,7 +287,7 @@ static double *spectrum_row(const fft *f, size_t first, size_t columns, size_t l
     return f->spectrum + (size_t)f->terms * (first * ((size_t)f->cy + 1) + l * columns);
 }
 
-static void add_spectrum_row(fft *f, int one_sided_x, int one_sided_y, size_t l) {
+static void add_spectrum_row(fft *f, bool one_sided_x, bool one_sided_y, size_t l) {
     size_t h = half_length(f), mirrored = l ? 2 * (size_t)f->cy - l : 0;
     double scale = 1 / (4 * (double)f->cx * (double)f->cy);
     for (size_t k = 0; k < h; k++) {
@@ -307,52 +311,56 @@ static void make_spectrum(fft *f, const double *kernel) {
     size_t count = ((size_t)f->cy + 1) * (size_t)f->terms * half_length(f);
     memset(f->spectrum, 0, count * sizeof *f->spectrum);
     int last_x = f->about_x == MIRROR_NONE ? 0 : 1, last_y = f->about_y == MIRROR_NONE ? 0 : 1;
-    for (int y = 0; y <= last_y; y++)
+    for (int y = 0; y <= last_y; y++) {
         for (int x = 0; x <= last_x; x++) {
-            transform_kernel(f, kernel, x, y);
-            for (size_t l = 0; l <= (size_t)f->cy; l++)
-                add_spectrum_row(f, x, y, l);
+            transform_kernel(f, kernel, x == 1, y == 1);
+            for (size_t l = 0; l <= (size_t)f->cy; l++) {
+                add_spectrum_row(f, x == 1, y == 1, l);
+            }
         }
+    }
 }
 
-fft *ilsai_fft_create(int cx, int cy, mirror_axis about_x, mirror_axis about_y,
-                      const double *kernel) {
-    fft *f = calloc(1, sizeof *f);
-    if (!f)
+static void destroy_batch(batch *b) {
+    if (b->part) {
+        fftw_destroy_plan(b->part);
+    }
+    if (b->rest) {
+        fftw_destroy_plan(b->rest);
+    }
+}
+
+static void destroy(void *made) {
+    fft *f = made;
+    destroy_batch(&f->rows_there);
+    destroy_batch(&f->columns_there);
+    destroy_batch(&f->columns_back);
+    destroy_batch(&f->rows_back);
+    fftw_free(f->rows);
+    fftw_free(f->half);
+    fftw_free(f->full);
+    fftw_free(f->spectrum);
+    ilsai_release(f);
+}
+
+static void *create(int cx, int cy, mirror_axis about_x, mirror_axis about_y,
+                    const double *kernel) {
+    fft *f = ilsai_allocate_zeroed(1, sizeof *f);
+    if (!f) {
         return NULL;
-    if (cy > cx)
-        *f = (fft){.turned = 1, .cx = cy, .cy = cx, .about_x = about_y, .about_y = about_x};
-    else
+    }
+    if (cy > cx) {
+        *f = (fft){.turned = true, .cx = cy, .cy = cx, .about_x = about_y, .about_y = about_x};
+    } else {
         *f = (fft){.cx = cx, .cy = cy, .about_x = about_x, .about_y = about_y};
+    }
     f->terms = terms_of(about_x, about_y);
     if (!allocate(f) || !plan(f)) {
-        ilsai_fft_destroy(&f);
+        destroy(f);
         return NULL;
     }
     make_spectrum(f, kernel);
     return f;
-}
-
-static void destroy_batch(batch *b) {
-    if (b->part)
-        fftw_destroy_plan(b->part);
-    if (b->rest)
-        fftw_destroy_plan(b->rest);
-}
-
-void ilsai_fft_destroy(fft **f) {
-    if (!*f)
-        return;
-    destroy_batch(&(*f)->rows_there);
-    destroy_batch(&(*f)->columns_there);
-    destroy_batch(&(*f)->columns_back);
-    destroy_batch(&(*f)->rows_back);
-    fftw_free((*f)->rows);
-    fftw_free((*f)->half);
-    fftw_free((*f)->full);
-    fftw_free((*f)->spectrum);
-    free(*f);
-    *f = NULL;
 }
 
 /* A product at work. */
@@ -375,10 +383,12 @@ static void lay_out_rows(const product *c, size_t first, size_t end) {
         size_t filled = j < c->by ? c->bx : 0;
         gather(row, c->w + j * c->at.y, c->at.x, filled);
         memset(row + filled, 0, (mx - filled) * sizeof *row);
-        if (c->f->about_x == MIRROR_CENTRE)
+        if (c->f->about_x == MIRROR_CENTRE) {
             row[0] *= 0.5;
-        for (size_t i = 0; i < filled && j == 0 && c->f->about_y == MIRROR_CENTRE; i++)
+        }
+        for (size_t i = 0; i < filled && j == 0 && c->f->about_y == MIRROR_CENTRE; i++) {
             row[i] *= 0.5;
+        }
     }
 }
 
@@ -456,16 +466,18 @@ static multiply_rows *multiplication(const fft *f) {
 static void multiply_by_spectrum(fft *f, size_t first, size_t end) {
     size_t cy = (size_t)f->cy, h = half_length(f), columns = end - first;
     multiply_rows *multiply = multiplication(f);
-    for (size_t l = 0; l <= cy; l++)
+    for (size_t l = 0; l <= cy; l++) {
         multiply(spectrum_row(f, first, columns, l), columns, f->full + l * h + first,
                  f->full + (l ? 2 * cy - l : 0) * h + first);
+    }
 }
 
 /* Zeros into the lower half of columns first .. end - 1. */
 static void clear_lower_part(fft *f, size_t first, size_t end) {
     size_t cy = (size_t)f->cy, h = half_length(f);
-    for (size_t j = cy; j < 2 * cy; j++)
+    for (size_t j = cy; j < 2 * cy; j++) {
         memset(f->half + j * h + first, 0, (end - first) * sizeof *f->half);
+    }
 }
 
 static void convolve_columns(void *context, int first, int end) {
@@ -480,8 +492,9 @@ static void convolve_columns(void *context, int first, int end) {
 }
 
 static void scatter(double *to, size_t step, const double *row, size_t count) {
-    for (size_t i = 0; i < count; i++)
+    for (size_t i = 0; i < count; i++) {
         to[i * step] = row[i];
+    }
 }
 
 static void transform_back(void *context, int first, int end) {
@@ -489,13 +502,15 @@ static void transform_back(void *context, int first, int end) {
     for (int part = first; part < end; part++) {
         rows_back(c->f, part);
         size_t last = end_of_part(part, (int)c->by);
-        for (size_t j = (size_t)part * FFT_PART; j < last; j++)
+        for (size_t j = (size_t)part * FFT_PART; j < last; j++) {
             scatter(c->p + j * c->at.y, c->at.x, c->f->rows + j * row_length(c->f), c->bx);
+        }
     }
 }
 
-void ilsai_fft_convolve(fft *f, thread_pool *threads, int bx, int by, const double *w, double *p,
-                        size_t stride) {
+static void apply(void *made, thread_pool *threads, int bx, int by, const double *w, double *p,
+                  size_t stride) {
+    fft *f = made;
     int columns = f->turned ? by : bx, rows = f->turned ? bx : by;
     product c = {f, (size_t)columns, (size_t)rows, steps_of(f, stride), w, p};
     int least = 1 + FFT_LEAST / (FFT_PART * f->cx);
@@ -503,3 +518,6 @@ void ilsai_fft_convolve(fft *f, thread_pool *threads, int bx, int by, const doub
     ilsai_thread_pool_run(threads, convolve_columns, &c, parts_of(f->cx + 1), least);
     ilsai_thread_pool_run(threads, transform_back, &c, parts_of(rows), least);
 }
+
+static const convolution_method method = {"fft", create, apply, destroy};
+const convolution_method *const ilsai_convolution_fft = &method;

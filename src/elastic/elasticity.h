@@ -1,64 +1,102 @@
 /*
- * The displacement-discontinuity kernel (4.6) and its Toeplitz product on a box of cells.
+ * Elasticity as the rest of the library sees it: the pressures p = C w that the widths of the
+ * fracture's cells bring about, Dontsov and Peirce 2017, (4.5).
  *
- * The one interface behind which another kernel fits: the product, the near-field entries, what the
- * self term lacks beside the front.
- * E' is a factor of every entry.
+ * An elasticity is made of a kernel, which is a table of functions. There is one kernel, that of a
+ * homogeneous medium (dd_kernel.h), for which C depends on the offset between two cells alone. No
+ * caller may rely on that: each function is told which cells it is asked about, so that a kernel
+ * of a layered medium fits behind the same table.
+ *
+ * Cells are given by their column and row on the mesh.
  */
 #ifndef ILSAI_ELASTICITY_H
 #define ILSAI_ELASTICITY_H
 
-#include "base/mirror.h"
+#include "base/grid.h"
 #include "base/thread_pool.h"
 #include "elastic/self_term.h"
 #include <ilsa/solver.h>
-
-/* C of (4.6) divided by E' for a cell offset (i, j) of cells dx by dy, free of cancellation. */
-double ilsai_kernel(long i, long j, double dx, double dy);
+#include <stdbool.h>
 
 typedef struct elasticity elasticity;
 
+typedef struct elastic_kernel {
+    const char *name;
+    ilsa_status (*set_box)(elasticity *e, const box *b, mirror_axis about_x, mirror_axis about_y);
+    void (*multiply)(elasticity *e, const double *w, double *p, size_t stride);
+    double (*entry)(const elasticity *e, int i, int j, int k, int l);
+    double (*self_entry)(const elasticity *e, int i, int j);
+    void (*make_self_terms)(elasticity *e);
+    self_term (*self_term)(const elasticity *e, int i, int j, const self_term_front *front);
+    void (*destroy)(elasticity *e);
+} elastic_kernel;
+
+/* The head of every elasticity; what its kernel keeps follows. */
+struct elasticity {
+    const elastic_kernel *kernel;
+    ilsa_product product; /* ILSA_PRODUCT_FFT or _BLAS, whichever computes the products */
+    thread_pool *threads; /* that share a product, or NULL; they must outlive their use here */
+};
+
 /*
- * method: ILSA_PRODUCT_FFT, _BLAS or _AUTO. NULL *e on failure. ILSA_ERR_MEMORY;
- * ILSA_ERR_MISMATCH when FFT is asked for and not built in.
+ * Makes the elasticity of a homogeneous medium for cells dx by dy. method is ILSA_PRODUCT_FFT,
+ * _BLAS or _AUTO. *e is NULL on failure. ILSA_ERR_MEMORY; ILSA_ERR_MISMATCH when FFT is asked for
+ * and not built in.
  */
 ilsa_status ilsai_elasticity_create(double E_prime, double dx, double dy, ilsa_product method,
                                     elasticity **e);
 void ilsai_elasticity_destroy(elasticity **e);
 
-/* Nonzero if the library was built with an FFT. */
-int ilsai_elasticity_has_fft(void);
+/* Whether the library was built with an FFT. */
+bool ilsai_elasticity_has_fft(void);
 
 /*
- * Makes ready for boxes of bx by by cells: kernel table, transform sizes, plans and buffers. Where
- * the box is one side of a mirror image about x or y, the cells beyond the axis, images of those
- * within, count in products and need not be there. Cheap when the rounded-up size is the one in
- * use. Which transform is used, and so every bit of a product, depends on the arguments alone and
- * not on earlier calls. On failure the box in use stays. ILSA_ERR_MEMORY.
+ * Makes ready for products and entries on the cells of a box. Where the box is one side of a mirror
+ * image about x = 0 or y = 0, the cells beyond the axis, which are images of cells of the box,
+ * count in products and need not be there. A call is cheap when the box, with its sides rounded up,
+ * has the size of the box in use. Every bit of a product depends on the arguments alone and not on
+ * earlier calls. On failure the box in use stays. ILSA_ERR_MEMORY.
  */
-ilsa_status ilsai_elasticity_set_box(elasticity *e, int bx, int by, mirror_axis about_x,
-                                     mirror_axis about_y);
+static inline ilsa_status ilsai_elasticity_set_box(elasticity *e, const box *b, mirror_axis about_x,
+                                                   mirror_axis about_y) {
+    return e->kernel->set_box(e, b, about_x, about_y);
+}
 
 /*
- * p[j * stride + i] = sum over the box, and its images, of C(i - k, j - l) w[l * stride + k], for
- * all 0 <= i < bx, 0 <= j < by. w and p may not overlap. Allocates nothing.
+ * Sets the pressures in the cells of the box from their widths and those of their images. w and p
+ * point to the numbers of the first cell of the box, rows are stride numbers apart, and the two may
+ * not overlap. Allocates nothing.
  */
-void ilsai_elasticity_multiply(elasticity *e, const double *w, double *p, size_t stride);
-
-/* ILSA_PRODUCT_FFT or _BLAS, whichever computes the products. */
-ilsa_product ilsai_elasticity_method(const elasticity *e);
-
-/* From now on the team, which must outlive e or the next call of this, shares the products. */
-void ilsai_elasticity_share(elasticity *e, thread_pool *threads);
+static inline void ilsai_elasticity_multiply(elasticity *e, const double *w, double *p,
+                                             size_t stride) {
+    e->kernel->multiply(e, w, p, stride);
+}
 
 /*
- * What C(0, 0) lacks in a cell beside the front, and its derivative by the distance of the front;
- * after ilsai_elasticity_make_self_terms, which is cheap but for the first call.
+ * The pressure in cell (i, j) for a width of 1 in cell (k, l). Both are cells of the box or images
+ * of such, or neighbours of these.
  */
-void ilsai_elasticity_make_self_terms(elasticity *e);
-self_term ilsai_elasticity_self_term(const elasticity *e, const self_term_front *front);
+static inline double ilsai_elasticity_entry(const elasticity *e, int i, int j, int k, int l) {
+    return e->kernel->entry(e, i, j, k, l);
+}
 
-/* Entry C(i, j) between two cells of the box, or one and an image, from the table of the box. */
-double ilsai_elasticity_entry(const elasticity *e, int i, int j);
+/* The entry of a cell of the mesh with itself. It needs no box. */
+static inline double ilsai_elasticity_self_entry(const elasticity *e, int i, int j) {
+    return e->kernel->self_entry(e, i, j);
+}
+
+/* Makes ready for ilsai_elasticity_self_term. Every call but the first is cheap. */
+static inline void ilsai_elasticity_make_self_terms(elasticity *e) {
+    e->kernel->make_self_terms(e);
+}
+
+/*
+ * What the entry of cell (i, j) with itself lacks beside the front, see self_term.h, as a pressure
+ * per width, and its derivative by the distance of the front.
+ */
+static inline self_term ilsai_elasticity_self_term(const elasticity *e, int i, int j,
+                                                   const self_term_front *front) {
+    return e->kernel->self_term(e, i, j, front);
+}
 
 #endif

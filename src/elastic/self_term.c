@@ -1,7 +1,7 @@
 #include "elastic/self_term.h"
 
 #include "base/gauss.h"
-#include "elastic/elasticity.h"
+#include "elastic/dd_kernel.h"
 #include <math.h>
 
 static const double pi = 3.14159265358979323846;
@@ -103,10 +103,10 @@ double ilsai_self_term_exact(double dx, double dy, const self_term_front *f) {
     for (long j = -ny; j <= ny; j++) {
         for (long i = -nx; i <= nx; i++) {
             double s = f->s - (double)i * dx * f->cos_a - (double)j * dy * f->sin_a;
-            sum += ilsai_kernel(i, j, dx, dy) * mean_power(s, a, b, f->exponent);
+            sum += ilsai_dd_kernel(i, j, dx, dy) * mean_power(s, a, b, f->exponent);
         }
     }
-    return (exact - sum) / (ilsai_kernel(0, 0, dx, dy) * mean_power(f->s, a, b, f->exponent));
+    return (exact - sum) / (ilsai_dd_kernel(0, 0, dx, dy) * mean_power(f->s, a, b, f->exponent));
 }
 
 /* ---- The table ---------------------------------------------------------------------------- */

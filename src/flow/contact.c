@@ -25,7 +25,7 @@ static void set_retained(const contact *c, int k, double value) {
 }
 
 static void set_state(const contact *c, int k, unsigned char state) {
-    static const unsigned char unknown[] = {UNKNOWN_WIDTH, UNKNOWN_LEAK, UNKNOWN_CONTACT,
+    static const unsigned char unknown[] = {UNKNOWN_WIDTH, UNKNOWN_RETAINED, UNKNOWN_CONTACT,
                                             UNKNOWN_WIDTH};
     int cell = c->cells->cell[k];
     c->field.state[cell] = state;
@@ -35,7 +35,8 @@ static void set_state(const contact *c, int k, unsigned char state) {
 
 void ilsai_contact_begin(const contact *c) {
     for (int k = 0; k < c->cells->count; k++) {
-        int cell = c->cells->cell[k], tip = c->cells->unknown[k] == UNKNOWN_PRESSURE;
+        int cell = c->cells->cell[k];
+        bool tip = c->cells->unknown[k] == UNKNOWN_PRESSURE;
         unsigned char state = tip ? CONTACT_OPEN : c->field.state[cell];
         double limit = state == CONTACT_OPEN ? 0 : retained_limit(c, k);
         if (state == CONTACT_DRAINING) {
@@ -54,44 +55,44 @@ void ilsai_contact_begin(const contact *c) {
 /* What the width would lack goes on as what does not leak. */
 static void close_cell(const contact *c, int k, double missing) {
     double limit = retained_limit(c, k);
-    int drains = missing < limit || (c->late && c->field.retained);
+    bool drains = missing < limit || (c->late && c->field.retained);
     c->width[c->cells->cell[k]] += missing;
     set_retained(c, k, drains ? missing : limit);
     set_state(c, k, drains ? CONTACT_DRAINING : CONTACT_CLOSED);
 }
 
-int ilsai_contact_bound(const contact *c, int k) {
+bool ilsai_contact_bound(const contact *c, int k) {
     int cell = c->cells->cell[k];
     if (c->cells->unknown[k] == UNKNOWN_WIDTH) {
         double missing = kept_width(c, cell) - c->width[cell];
         c->field.state[cell] = CONTACT_OPEN;
         if (missing >= 0) {
             close_cell(c, k, missing);
-            return 1;
+            return true;
         }
-    } else if (c->cells->unknown[k] == UNKNOWN_LEAK && !c->late) {
+    } else if (c->cells->unknown[k] == UNKNOWN_RETAINED && !c->late) {
         double limit = retained_limit(c, k), retained = c->field.retained[cell];
         if (retained < 0 || retained > limit) {
             set_retained(c, k, retained < 0 ? 0 : limit);
             set_state(c, k, retained < 0 ? CONTACT_OPEN : CONTACT_CLOSED);
-            return 1;
+            return true;
         }
     }
-    return 0;
+    return false;
 }
 
-int ilsai_contact_opens(const contact *c, int k) {
+bool ilsai_contact_opens(const contact *c, int k) {
     return c->pressure[c->cells->cell[k]] > c->stress[k] && !(c->late && !c->field.retained);
 }
 
 void ilsai_contact_reopen(const contact *c, int k) {
-    int drains = retained_limit(c, k) > 0 || (c->late && c->field.retained);
+    bool drains = retained_limit(c, k) > 0 || (c->late && c->field.retained);
     c->pressure[c->cells->cell[k]] = c->stress[k];
     set_state(c, k, drains ? CONTACT_DRAINING : CONTACT_OPENING);
 }
 
 double ilsai_contact_violation(const contact *c, int k) {
-    if (c->cells->unknown[k] != UNKNOWN_LEAK) {
+    if (c->cells->unknown[k] != UNKNOWN_RETAINED) {
         return 0;
     }
     double retained = c->field.retained[c->cells->cell[k]];

@@ -12,6 +12,7 @@
 #define ILSAI_CONTACT_H
 
 #include "base/unknowns.h"
+#include <stdbool.h>
 
 /* States of a channel cell; an array of zeros has all of them open. */
 enum { CONTACT_OPEN, CONTACT_DRAINING, CONTACT_CLOSED, CONTACT_OPENING /* in this iteration */ };
@@ -40,11 +41,11 @@ typedef struct contact {
      * Cells that open and close in turn would go on for ever: late in a solve they drain, beyond
      * the bounds if need be; where nothing leaks those that are closed stay so.
      */
-    int late;
+    bool late;
 } contact;
 
 /* Whether a step finds a channel cell of this width closed. */
-static inline int ilsai_contact_closed(double width, double closure_width) {
+static inline bool ilsai_contact_closed(double width, double closure_width) {
     return width <= CONTACT_TOUCHES * closure_width;
 }
 
@@ -55,10 +56,10 @@ void ilsai_contact_begin(const contact *c);
  * After a change of the widths and reliefs: active channel cell k closes, drains or opens if it has
  * passed a bound, on which it is put. Returns whether it has.
  */
-int ilsai_contact_bound(const contact *c, int k);
+bool ilsai_contact_bound(const contact *c, int k);
 
 /* Whether the pressure of closed cell k exceeds the closure stress, and the cell may open. */
-int ilsai_contact_opens(const contact *c, int k);
+bool ilsai_contact_opens(const contact *c, int k);
 
 /* Opens such a cell. */
 void ilsai_contact_reopen(const contact *c, int k);

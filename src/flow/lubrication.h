@@ -1,40 +1,79 @@
-/* The lubrication operator (4.3) on the numbered cells, and its derivative. */
+/*
+ * Lubrication: the fluid that flows through the faces of the numbered cells in a step, Dontsov and
+ * Peirce 2017, (4.3) and (4.4), for any fluid.
+ *
+ * A fluid is a table with one function, which goes over all faces and sets the arrays below. The
+ * coupled solve, its Newton matrix and its preconditioner see these arrays alone. They ask for
+ * four things:
+ *
+ * - A face without a numbered cell across has zeros, so that no fluid passes it.
+ * - Seen from the two cells of a face, the fluxes are opposite and the derivatives by_pressure
+ *   equal. What one cell loses the other gains.
+ * - by_pressure is not negative: fluid flows towards the lower pressure.
+ * - by_width is the derivative by the width of either cell. One number is enough for a fluid whose
+ *   flux depends on the widths through their mean.
+ */
 #ifndef ILSAI_LUBRICATION_H
 #define ILSAI_LUBRICATION_H
 
 #include "base/thread_pool.h"
 #include "base/unknowns.h"
+#include <ilsa/material.h>
+#include <stddef.h>
 
-/* Per numbered cell and face; 0 where there is no numbered cell across, so that no fluid passes. */
+/* One number per numbered cell and face, at GRID_FACES * cell + face. */
 typedef struct lubrication {
-    double *conductance; /* dt w^3 / (mu' h^2): width gained per pressure difference */
-    double *slope;       /* derivative of that face's gain by the width of either cell */
-    int capacity;
-    thread_pool *threads; /* that share the loops, or NULL */
+    double *flux;        /* volume per area of the cell that enters it in the step */
+    double *by_pressure; /* derivative by the pressure across the face less that of the cell */
+    double *by_width;
+    size_t capacity; /* faces that the arrays have room for */
 } lubrication;
 
-ilsa_status ilsai_lubrication_reserve(lubrication *f, int count);
-void ilsai_lubrication_destroy(lubrication *f);
+/* What a fluid may find its fluxes from. Widths and pressures are over the mesh. */
+typedef struct flow_state {
+    const grid *g;
+    const unknowns *cells;
+    const ilsa_material_def *material;
+    double dt;
+    const double *width, *width_old; /* at the end of the step and at its start */
+    const double *pressure;
+    thread_pool *threads; /* that share the loops, or NULL */
+} flow_state;
 
 /*
- * Sets both from widths, those at the start of the step, and pressures over the mesh. Of the three
- * factors of w^3 one is the mean over the step. Where the front moves on, the flux V w through a
- * face grows with the width during the step and its mean is V w_mean, while the pressure gradient
- * at the end is mu' V / w^2: with w^3 the flux would be too large beside the front by the same part
- * on any mesh.
+ * A fluid that is not Newtonian needs the size of the whole gradient at a face. The component along
+ * the normal is the pressure difference across the face. The other one is a mean of the differences
+ * that both cells of the face have to their neighbours along the other axis: cells->neighbour leads
+ * to these, and their pressures are known. by_pressure is then the derivative with that component
+ * held. The Newton matrix leaves out how the flux changes with it, which costs iterations and no
+ * accuracy.
  */
-void ilsai_lubrication_set(lubrication *f, const unknowns *a, const grid *g, const double *width,
-                           const double *width_old, const double *pressure,
-                           double dt_over_mu_prime);
+typedef struct fluid {
+    const char *name;
+    void (*set_fluxes)(lubrication *l, const flow_state *state);
+} fluid;
 
-/* dt [A(w) p] of numbered cell k, for the conductances as they are set. */
-static inline double ilsai_lubrication_inflow(const lubrication *f, const unknowns *a,
-                                              const double *pressure, int k) {
-    double sum = 0, p = pressure[a->cell[k]];
+/* Makes room for the faces of count numbered cells. ILSA_ERR_MEMORY. */
+ilsa_status ilsai_lubrication_reserve(lubrication *l, int count);
+void ilsai_lubrication_destroy(lubrication *l);
+
+/* Volume per area that enters numbered cell k in the step: dt A(w) p of (4.4). */
+static inline double ilsai_lubrication_inflow(const lubrication *l, int k) {
+    double sum = 0;
     for (int face = 0; face < GRID_FACES; face++) {
-        int at = GRID_FACES * k + face, other = a->neighbour[at];
+        sum += l->flux[GRID_FACES * k + face];
+    }
+    return sum;
+}
+
+/* The change of that for changes of the pressures over the mesh, to first order. */
+static inline double ilsai_lubrication_inflow_change(const lubrication *l, const unknowns *cells,
+                                                     const double *change, int k) {
+    double sum = 0, here = change[cells->cell[k]];
+    for (int face = 0; face < GRID_FACES; face++) {
+        int at = GRID_FACES * k + face, other = cells->neighbour[at];
         if (other >= 0) {
-            sum += f->conductance[at] * (pressure[a->cell[other]] - p);
+            sum += l->by_pressure[at] * (change[cells->cell[other]] - here);
         }
     }
     return sum;

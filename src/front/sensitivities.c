@@ -68,7 +68,8 @@ static sensitivity sensitivity_of_cell(const front_pass *p, const front_cell *c,
  */
 static sensitivity sensitivity_of_survey(const front_pass *p, const survey_cell *survey) {
     sensitivity r = {.cell = survey->cell};
-    double self = p->material->E_prime * ilsai_kernel(0, 0, p->g->dx, p->g->dy);
+    double self =
+        ilsai_elasticity_self_entry(p->elastic, survey->cell % p->g->nx, survey->cell / p->g->nx);
     double slope = ilsai_survey_self_term(p, survey).slope * p->trial->width[survey->cell];
     derivative a = {.pressure = fmax(slope * survey->ds_dw, -ILSAI_SELF_TERM_GIVES * self)};
     if (survey->ds_dw > 0) {

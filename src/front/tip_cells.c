@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "base/tuning.h"
 #include "flow/contact.h"
+#include "flow/leakoff.h"
 #include "tip/asymptote.h"
 #include <math.h>
 
@@ -80,8 +81,7 @@ double ilsai_tip_cells_leakoff(const front_pass *p, const front_cell *c,
                                tip_cell_history *history) {
     tip_cell_front at = {c->ell, c->cos_a, c->sin_a, p->g->dx, p->g->dy};
     *history = path_in_cell(p, c);
-    return ilsai_tip_cell_leakoff_last(p->material->C_prime, p->velocity, &at, history) /
-           (p->g->dx * p->g->dy);
+    return ilsai_leakoff_tip(p->material->C_prime, p->velocity, &at, history).volume;
 }
 
 /* Whether the cells that place the front in c are closed, which brings it no fluid. */
@@ -213,12 +213,13 @@ self_term ilsai_tip_cells_self_term(const front_pass *p, const front_cell *c) {
     double w = V > 0 ? ilsai_asymptote_width(p->widths.tip_material, V, at) : 1;
     self_term_front seen = {at, c->cos_a, c->sin_a,
                             ilsai_asymptote_exponent(p->widths.tip_material, V, at, w)};
-    return ilsai_elasticity_self_term(p->elastic, &seen);
+    return ilsai_elasticity_self_term(p->elastic, c->cell % p->g->nx, c->cell / p->g->nx, &seen);
 }
 
 self_term ilsai_survey_self_term(const front_pass *p, const survey_cell *survey) {
     self_term_front seen = ilsai_survey_front(survey);
-    return ilsai_elasticity_self_term(p->elastic, &seen);
+    return ilsai_elasticity_self_term(p->elastic, survey->cell % p->g->nx, survey->cell / p->g->nx,
+                                      &seen);
 }
 
 static void set_survey_self_terms(void *context, int first, int end) {

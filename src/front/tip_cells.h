@@ -7,11 +7,11 @@
 
 #include "base/error.h"
 #include "base/fields.h"
+#include "base/sensitivity.h"
 #include "base/thread_pool.h"
 #include "elastic/elasticity.h"
 #include "front/march.h"
 #include "front/survey.h"
-#include "solve/jacobian.h"
 #include "tip/tip_paths.h"
 
 /* What the tip cells of a pass are found from. */

@@ -1,18 +1,21 @@
 #include "solve/anderson.h"
 
+#include "base/error.h"
+#include "base/memory.h"
 #include <lapacke.h>
 #include <math.h>
-#include <stdlib.h>
+#include <stdbool.h>
 #include <string.h>
 
 enum { DEPTH_MAX = 10 };
 
 struct anderson {
-    int depth, n, capacity;
+    int depth, n;
+    size_t capacity; /* unknowns that there is room for */
     int columns;     /* differences that can be of use: depth, at most n */
     int kept;        /* differences held, <= depth */
     int next;        /* column that the next difference goes to */
-    int have_last;   /* last_g and last_f are set */
+    bool have_last;  /* last_g and last_f are set */
     double smallest; /* smallest residual norm since the last restart */
     double *last_g, *last_f;
     double *delta_g, *delta_f; /* n by depth, differences of g and of f = g - x */
@@ -21,59 +24,36 @@ struct anderson {
 };
 
 anderson *ilsai_anderson_create(int depth) {
-    anderson *a = calloc(1, sizeof *a);
+    anderson *a = ilsai_allocate_zeroed(1, sizeof *a);
     if (a) {
         a->depth = depth;
     }
     return a;
 }
 
-static void release(anderson *a) {
-    free(a->last_g);
-    free(a->last_f);
-    free(a->delta_g);
-    free(a->delta_f);
-    free(a->matrix);
-    free(a->rhs);
-}
-
 void ilsai_anderson_destroy(anderson **a) {
     if (*a) {
-        release(*a);
-        free(*a);
+        ilsai_release((*a)->last_g);
+        ilsai_release((*a)->last_f);
+        ilsai_release((*a)->delta_g);
+        ilsai_release((*a)->delta_f);
+        ilsai_release((*a)->matrix);
+        ilsai_release((*a)->rhs);
+        ilsai_release(*a);
         *a = NULL;
     }
 }
 
-static ilsa_status reserve(anderson *a, int n) {
-    if (n <= a->capacity) {
-        return ILSA_OK;
-    }
-    anderson grown = {.depth = a->depth, .capacity = n + n / 2 + 16};
-    size_t rows = (size_t)grown.capacity, columns = (size_t)(a->depth > 0 ? a->depth : 1);
-    grown.last_g = malloc(rows * sizeof(double));
-    grown.last_f = malloc(rows * sizeof(double));
-    grown.delta_g = malloc(rows * columns * sizeof(double));
-    grown.delta_f = malloc(rows * columns * sizeof(double));
-    grown.matrix = malloc(rows * columns * sizeof(double));
-    grown.rhs = malloc(rows * sizeof(double));
-    if (!grown.last_g || !grown.last_f || !grown.delta_g || !grown.delta_f || !grown.matrix ||
-        !grown.rhs) {
-        release(&grown);
-        return ILSA_ERR_MEMORY;
-    }
-    release(a);
-    *a = grown;
-    return ILSA_OK;
-}
-
 ilsa_status ilsai_anderson_begin(anderson *a, int n) {
-    if (reserve(a, n) != ILSA_OK) {
-        return ILSA_ERR_MEMORY;
-    }
+    const size_t columns = (size_t)a->depth * sizeof(double);
+    const grown_array arrays[] = {ILSAI_GROWN(a->last_g), ILSAI_GROWN(a->last_f),
+                                  ILSAI_GROWN(a->rhs),    {&a->delta_g, columns},
+                                  {&a->delta_f, columns}, {&a->matrix, columns}};
+    ILSAI_TRY(ilsai_grow((size_t)n, &a->capacity, arrays, sizeof arrays / sizeof *arrays));
     a->n = n;
     a->columns = a->depth < n ? a->depth : n;
-    a->kept = a->next = a->have_last = 0;
+    a->kept = a->next = 0;
+    a->have_last = false;
     a->smallest = INFINITY;
     return ILSA_OK;
 }
@@ -95,7 +75,7 @@ static void remember(anderson *a, const double *g, const double *x) {
         a->last_g[k] = g[k];
         a->last_f[k] = g[k] - x[k];
     }
-    a->have_last = 1;
+    a->have_last = true;
 }
 
 static double residual_norm(const anderson *a, const double *g, const double *x) {
@@ -106,14 +86,14 @@ static double residual_norm(const anderson *a, const double *g, const double *x)
     return sqrt(sum);
 }
 
-/* Weights of the differences that make the residual least; 0 if there is no sound solution. */
-static int weights(anderson *a, int columns) {
+/* Weights of the differences that make the residual least; false if there is no sound solution. */
+static bool weights(anderson *a, int columns) {
     size_t size = (size_t)a->n * (size_t)columns;
     memcpy(a->matrix, a->delta_f, size * sizeof(double));
     memcpy(a->rhs, a->last_f, (size_t)a->n * sizeof(double));
     if (LAPACKE_dgels_work(LAPACK_COL_MAJOR, 'N', a->n, columns, 1, a->matrix, a->n, a->rhs, a->n,
                            a->work, (lapack_int)(sizeof a->work / sizeof *a->work)) != 0) {
-        return 0;
+        return false;
     }
     double sum = 0;
     for (int k = 0; k < columns; k++) {
@@ -125,7 +105,8 @@ static int weights(anderson *a, int columns) {
 void ilsai_anderson_next(anderson *a, const double *g, double *x) {
     double norm = residual_norm(a, g, x);
     if (norm > 2 * a->smallest) {
-        a->kept = a->next = a->have_last = 0;
+        a->kept = a->next = 0;
+        a->have_last = false;
         a->smallest = norm;
     }
     a->smallest = norm < a->smallest ? norm : a->smallest;

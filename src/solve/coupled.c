@@ -1,39 +1,39 @@
 #include "solve/coupled.h"
 
 #include "base/clock.h"
+#include "base/error.h"
+#include "base/memory.h"
 #include "base/tuning.h"
 #include "solve/gmres.h"
 #include "solve/jacobian.h"
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
+#include <stdbool.h>
 
 struct coupled {
     unknowns cells;
-    lubrication fluid;
+    lubrication lubrication;
     jacobian matrix;
     gmres *krylov;
     double *rhs, *step;
-    double *source_change;    /* change of the source terms at the front in this solve */
-    double *front_pressure;   /* change of the pressures there for the front's move in this solve */
-    double *closing_pressure; /* of closed cells: the pressure with which they closed or entered the
-                                 solve */
-    double *stress; /* of channel cells: the pressure that holds them at their width, (4.7) */
-    int capacity;
-    int sensitivity_capacity;
+    /* Per numbered cell, changes in this solve by the sensitivities: of the source term, and of the
+     * pressure at a given width. */
+    double *source_change, *pressure_change;
+    double *closing_pressure; /* of a closed cell: the pressure when it closed or the solve began */
+    double *stress;  /* of a channel cell: sigma + C w, the pressure that holds its width */
+    size_t capacity; /* numbered cells that the arrays over them have room for */
     int closed;      /* cells that are closed or drain */
     double residual; /* of the last linear solve, relative */
 };
 
 coupled *ilsai_coupled_create(const ilsa_mesh_def *mesh) {
-    coupled *c = calloc(1, sizeof *c);
+    coupled *c = ilsai_allocate_zeroed(1, sizeof *c);
     if (!c) {
         return NULL;
     }
     size_t mesh_cells = (size_t)mesh->nx * (size_t)mesh->ny;
     c->krylov = ilsai_gmres_create(ILSAI_GMRES_RESTART);
-    c->matrix.width = calloc(mesh_cells, sizeof(double));
-    c->matrix.pressure = calloc(mesh_cells, sizeof(double));
+    c->matrix.width = ilsai_allocate_zeroed(mesh_cells, sizeof(double));
+    c->matrix.pressure = ilsai_allocate_zeroed(mesh_cells, sizeof(double));
     if (ilsai_unknowns_create(&c->cells, mesh) != ILSA_OK || !c->krylov || !c->matrix.width ||
         !c->matrix.pressure) {
         ilsai_coupled_destroy(&c);
@@ -44,16 +44,16 @@ coupled *ilsai_coupled_create(const ilsa_mesh_def *mesh) {
 void ilsai_coupled_destroy(coupled **c) {
     if (*c) {
         ilsai_unknowns_destroy(&(*c)->cells);
-        ilsai_lubrication_destroy(&(*c)->fluid);
+        ilsai_lubrication_destroy(&(*c)->lubrication);
         ilsai_jacobian_destroy(&(*c)->matrix);
         ilsai_gmres_destroy(&(*c)->krylov);
-        free((*c)->rhs);
-        free((*c)->step);
-        free((*c)->source_change);
-        free((*c)->front_pressure);
-        free((*c)->stress);
-        free((*c)->closing_pressure);
-        free(*c);
+        ilsai_release((*c)->rhs);
+        ilsai_release((*c)->step);
+        ilsai_release((*c)->source_change);
+        ilsai_release((*c)->pressure_change);
+        ilsai_release((*c)->stress);
+        ilsai_release((*c)->closing_pressure);
+        ilsai_release(*c);
         *c = NULL;
     }
 }
@@ -63,30 +63,20 @@ int ilsai_coupled_unknowns(const coupled *c) {
 }
 
 static ilsa_status reserve(coupled *c, int count) {
-    if (ilsai_lubrication_reserve(&c->fluid, count) != ILSA_OK ||
-        ilsai_gmres_reserve(c->krylov, (size_t)count) != ILSA_OK) {
-        return ILSA_ERR_MEMORY;
-    }
-    double **arrays[] = {&c->rhs,
-                         &c->step,
-                         &c->source_change,
-                         &c->front_pressure,
-                         &c->stress,
-                         &c->closing_pressure,
-                         &c->matrix.self_correction};
-    size_t capacity = (size_t)count + (size_t)count / 2 + 64;
-    for (size_t k = 0; count > c->capacity && k < sizeof arrays / sizeof *arrays; k++) {
-        double *fresh = realloc(*arrays[k], capacity * sizeof *fresh);
-        if (!fresh) {
-            return ILSA_ERR_MEMORY;
-        }
-        *arrays[k] = fresh;
-    }
-    c->capacity = count > c->capacity ? (int)capacity : c->capacity;
-    return ILSA_OK;
+    const grown_array arrays[] = {ILSAI_GROWN(c->rhs),
+                                  ILSAI_GROWN(c->step),
+                                  ILSAI_GROWN(c->source_change),
+                                  ILSAI_GROWN(c->pressure_change),
+                                  ILSAI_GROWN(c->stress),
+                                  ILSAI_GROWN(c->closing_pressure),
+                                  ILSAI_GROWN(c->matrix.self_correction),
+                                  ILSAI_GROWN(c->matrix.sensitivity_of)};
+    ILSAI_TRY(ilsai_lubrication_reserve(&c->lubrication, count));
+    ILSAI_TRY(ilsai_gmres_reserve(c->krylov, (size_t)count));
+    return ilsai_grow((size_t)count, &c->capacity, arrays, sizeof arrays / sizeof *arrays);
 }
 
-static contact contact_of(coupled *c, const coupled_problem *problem, int late) {
+static contact contact_of(coupled *c, const coupled_problem *problem, bool late) {
     return (contact){.field = problem->contact,
                      .cells = &c->cells,
                      .old = problem->width_old,
@@ -117,7 +107,7 @@ static void add_pressures(void *context, int first, int end) {
         if (c->cells.unknown[k] != UNKNOWN_PRESSURE) {
             c->stress[k] = problem->sigma[cell] + c->matrix.pressure[cell] +
                            c->matrix.self_correction[k] * problem->width[cell] +
-                           c->front_pressure[k];
+                           c->pressure_change[k];
         }
         if (c->cells.unknown[k] < UNKNOWN_PRESSURE) {
             problem->pressure[cell] = c->stress[k];
@@ -129,8 +119,8 @@ void ilsai_coupled_pressure(coupled *c, const coupled_problem *problem, coupled_
     box part = ilsai_box_fold(problem->g, &c->cells.footprint);
     double start = ilsai_clock();
     size_t corner = (size_t)ilsai_grid_cell(problem->g, part.x0, part.y0);
-    ilsai_elasticity_multiply(problem->e, problem->width + corner, c->matrix.pressure + corner,
-                              (size_t)problem->g->nx);
+    ilsai_elasticity_multiply(problem->elastic, problem->width + corner,
+                              c->matrix.pressure + corner, (size_t)problem->g->nx);
     counts->seconds_product += ilsai_clock() - start;
     counts->products++;
     share_cells(add_pressures, c, problem);
@@ -141,12 +131,12 @@ static void balance_volumes(void *context, int first, int end) {
     const coupled_problem *problem = ((const loop *)context)->problem;
     for (int k = first; k < end; k++) {
         int cell = c->cells.cell[k];
-        double gain = ilsai_lubrication_inflow(&c->fluid, &c->cells, problem->pressure, k);
+        double inflow = ilsai_lubrication_inflow(&c->lubrication, k);
         double source = problem->source_term[cell] + c->source_change[k];
         source += problem->contact.retained ? problem->contact.retained[cell] : 0;
-        c->rhs[k] = gain + (source - (problem->width[cell] - problem->width_old[cell]));
+        c->rhs[k] = inflow + (source - (problem->width[cell] - problem->width_old[cell]));
         if (c->cells.unknown[k] == UNKNOWN_CONTACT) {
-            c->rhs[k] -= ilsai_jacobian_without_width(&c->matrix, k) *
+            c->rhs[k] -= ilsai_jacobian_extra_diagonal(&c->matrix, k) *
                          (problem->pressure[cell] - c->closing_pressure[k]);
         }
     }
@@ -154,16 +144,20 @@ static void balance_volumes(void *context, int first, int end) {
 
 /* rhs = -(w - w_old - dt A(w) p - S), (4.4). */
 static void set_rhs(coupled *c, const coupled_problem *problem) {
-    ilsai_lubrication_set(&c->fluid, &c->cells, problem->g, problem->width, problem->width_old,
-                          problem->pressure, problem->dt / problem->mu_prime);
+    flow_state state = {.g = problem->g,
+                        .cells = &c->cells,
+                        .material = problem->material,
+                        .dt = problem->dt,
+                        .width = problem->width,
+                        .width_old = problem->width_old,
+                        .pressure = problem->pressure,
+                        .threads = problem->threads};
+    problem->fluid->set_fluxes(&c->lubrication, &state);
     share_cells(balance_volumes, c, problem);
 }
 
 static ilsa_status solve_iterative(coupled *c, coupled_counts *counts) {
-    ilsa_status status = ilsai_jacobian_set_preconditioner(&c->matrix);
-    if (status != ILSA_OK) {
-        return status;
-    }
+    ILSAI_TRY(ilsai_jacobian_set_preconditioner(&c->matrix));
     gmres_result result = ilsai_gmres_solve(
         c->krylov, (size_t)c->cells.count, ilsai_jacobian_multiply, ilsai_jacobian_precondition,
         &c->matrix, c->rhs, c->step, c->closed > 0 ? ILSAI_GMRES_CONTACT : ILSAI_GMRES_TOLERANCE,
@@ -189,38 +183,40 @@ static double step_length(const coupled *c, const coupled_problem *problem) {
     return length;
 }
 
-/* Changes the unknown of numbered cell k, and what of the cell answers to the others'. */
+/* Changes the unknown of numbered cell k, and what its sensitivity ties to other unknowns. */
 static void move_cell(const coupled *c, const coupled_problem *problem, int k, double length) {
     int cell = c->cells.cell[k];
     double delta = length * c->step[k], *width = &problem->width[cell];
     switch (c->cells.unknown[k]) {
     case UNKNOWN_WIDTH:
         *width += delta;
-        c->front_pressure[k] += length * ilsai_jacobian_front_pressure(&c->matrix, k, c->step);
+        c->pressure_change[k] += length * ilsai_jacobian_pressure_change(&c->matrix, k, c->step);
         break;
-    case UNKNOWN_LEAK:
+    case UNKNOWN_RETAINED:
         problem->contact.retained[cell] += delta;
         break;
     default:
         problem->pressure[cell] += delta;
-        delta = length * ilsai_jacobian_tip_width(&c->matrix, k, c->step);
+        delta = length * ilsai_jacobian_width_change(&c->matrix, k, c->step);
         *width = fmax(*width + delta, (1 - ILSAI_WIDTH_DROP) * *width);
     }
-    c->source_change[k] += length * ilsai_jacobian_tip_source(&c->matrix, k, c->step);
+    c->source_change[k] += length * ilsai_jacobian_source_change(&c->matrix, k, c->step);
 }
 
 /* What a Newton step has done. */
 typedef struct progress {
-    double change; /* the largest of a width, or of what leaks, over the largest width, or NaN */
+    double change; /* the largest of a width, or of a retained leak-off, over the largest width; NaN
+                      where the step is no number */
     int switched;  /* cells that have closed or opened */
 } progress;
 
 /*
- * Whether a late solve has gone too far: leak-off beyond its bounds against the largest width, or
- * the pressure in a closed cell beyond the closure stress against the largest net pressure.
+ * Whether a late solve has gone too far. It has where the leak-off of a draining cell is beyond its
+ * bounds by too much of the largest width, or the pressure in a closed cell beyond the closure
+ * stress by too much of the largest net pressure.
  */
-static int is_forced(coupled *c, const coupled_problem *problem) {
-    contact faces = contact_of(c, problem, 1);
+static bool is_forced(coupled *c, const coupled_problem *problem) {
+    contact faces = contact_of(c, problem, true);
     double net = 0, width = 0, excess = 0, violation = 0;
     for (int k = 0; k < c->cells.count; k++) {
         int cell = c->cells.cell[k];
@@ -235,7 +231,7 @@ static int is_forced(coupled *c, const coupled_problem *problem) {
     return excess > ILSAI_CONTACT_FORCED * net || violation > ILSAI_CONTACT_FORCED * width;
 }
 
-static progress take_step(coupled *c, const coupled_problem *problem, double length, int late) {
+static progress take_step(coupled *c, const coupled_problem *problem, double length, bool late) {
     contact faces = contact_of(c, problem, late);
     double change = 0, largest = 0, sum = 0;
     int switched = 0;
@@ -257,30 +253,32 @@ static progress take_step(coupled *c, const coupled_problem *problem, double len
 }
 
 /*
- * The flow into a cell that opens is large for its width until the pressures have met: it would
- * make Newton's step a negative one, so that the first goes without its answer to the width.
+ * The flow into a cell that opens is large for its width until the pressures on both sides have
+ * met. Its derivative by the width would turn Newton's step around, so that the first iteration
+ * goes without that derivative.
  */
-static void hold_slopes(const coupled *c, int k) {
+static void drop_width_derivatives(const coupled *c, int k) {
     for (int face = 0; face < GRID_FACES; face++) {
         int at = GRID_FACES * k + face, other = c->cells.neighbour[at];
-        c->fluid.slope[at] = 0;
+        c->lubrication.by_width[at] = 0;
         for (int back = 0; other >= 0 && back < GRID_FACES; back++) {
             int from = GRID_FACES * other + back;
-            c->fluid.slope[from] *= c->cells.neighbour[from] != k;
+            c->lubrication.by_width[from] *= c->cells.neighbour[from] != k;
         }
     }
 }
 
-static void hold_opening(const coupled *c, const coupled_problem *problem) {
+static void calm_opening_cells(const coupled *c, const coupled_problem *problem) {
     for (int k = 0; k < c->cells.count; k++) {
         if (problem->contact.state[c->cells.cell[k]] == CONTACT_OPENING) {
-            hold_slopes(c, k);
+            drop_width_derivatives(c, k);
         }
     }
 }
 
-/* Opens the closed cells that are to open with the widths as they are, and counts the others. */
-static int reopen(coupled *c, const coupled_problem *problem, int late) {
+/* Opens the closed cells whose pressure calls for it at the widths as they are, and counts the
+ * cells that are closed or drain after that. Returns how many were opened. */
+static int reopen(coupled *c, const coupled_problem *problem, bool late) {
     contact faces = contact_of(c, problem, late);
     int opened = 0;
     c->closed = 0;
@@ -290,52 +288,50 @@ static int reopen(coupled *c, const coupled_problem *problem, int late) {
             ilsai_contact_reopen(&faces, k);
             opened++;
         }
-        c->closed += *unknown == UNKNOWN_LEAK || *unknown == UNKNOWN_CONTACT;
+        c->closed += *unknown == UNKNOWN_RETAINED || *unknown == UNKNOWN_CONTACT;
     }
     return opened;
 }
 
-static int choose_dense(const coupled *c, const coupled_problem *problem) {
+static bool choose_dense(const coupled *c, const coupled_problem *problem) {
     return problem->linear == ILSA_LINEAR_DENSE ||
            (problem->linear == ILSA_LINEAR_AUTO && c->cells.count <= ILSAI_DENSE_UNKNOWNS);
 }
 
-/* Error left in the widths after a full Newton step of relative size change. */
+/* Estimate of the error left in the widths after a full Newton step of relative size `change`. */
 static double error_left(const coupled *c, double change) {
     return change * (ILSAI_NEWTON_CURVATURE * change + ILSAI_NEWTON_RESIDUAL * c->residual);
 }
 
-/* The influence matrix is made anew where the unknowns are others than in the last solve. */
-static ilsa_status solve_linear(coupled *c, int dense, int others, coupled_counts *counts) {
-    ilsa_status status = dense && others ? ilsai_jacobian_set_influence(&c->matrix) : ILSA_OK;
-    if (status == ILSA_OK) {
-        counts->newton++;
-        status = dense ? ilsai_jacobian_solve_full(&c->matrix, c->rhs, c->step)
-                       : solve_iterative(c, counts);
+/* The influence matrix is made anew where cells have changed their unknowns since the last solve.
+ */
+static ilsa_status solve_linear(coupled *c, bool dense, bool changed, coupled_counts *counts) {
+    if (dense && changed) {
+        ILSAI_TRY(ilsai_jacobian_set_influence(&c->matrix));
     }
-    return status == ILSA_ERR_NUMERIC ? ILSA_STEP_REJECTED : status;
+    counts->newton++;
+    return dense ? ilsai_jacobian_solve_full(&c->matrix, c->rhs, c->step)
+                 : solve_iterative(c, counts);
 }
 
 /*
- * Newton's method; where cells close or open a semi-smooth one: each iteration solves for the
- * unknowns that their states call for, and leaves the states that its solution calls for.
+ * Newton's method, which is semi-smooth where cells close or open: each iteration solves for the
+ * unknowns that the states of contact call for, and leaves the states that its solution calls for.
  */
 static ilsa_status newton(coupled *c, const coupled_problem *problem, coupled_counts *counts) {
-    int dense = choose_dense(c, problem), left = ILSAI_NEWTON_MAX;
+    bool dense = choose_dense(c, problem);
+    int left = ILSAI_NEWTON_MAX;
     progress made = {0, 1};
     c->residual = 0;
     for (int k = 0; k < ILSAI_CONTACT_MAX && left > 0; k++) {
-        int late = k >= ILSAI_CONTACT_LATE;
+        bool late = k >= ILSAI_CONTACT_LATE;
         ilsai_coupled_pressure(c, problem, counts);
         made.switched += reopen(c, problem, late);
         set_rhs(c, problem);
         if (made.switched > 0 && problem->contact.state) {
-            hold_opening(c, problem);
+            calm_opening_cells(c, problem);
         }
-        ilsa_status status = solve_linear(c, dense, made.switched, counts);
-        if (status != ILSA_OK) {
-            return status;
-        }
+        ILSAI_TRY(solve_linear(c, dense, made.switched > 0, counts));
         double length = step_length(c, problem);
         made = take_step(c, problem, length, late);
         if (isnan(made.change)) {
@@ -349,20 +345,11 @@ static ilsa_status newton(coupled *c, const coupled_problem *problem, coupled_co
     return ILSA_STEP_REJECTED;
 }
 
-/* Which numbered cell has which sensitivity. */
-static ilsa_status find_sensitivities(coupled *c, const coupled_problem *problem) {
-    if (c->cells.count > c->sensitivity_capacity) {
-        size_t capacity = (size_t)c->cells.count + (size_t)c->cells.count / 2 + 64;
-        int *fresh = realloc(c->matrix.sensitivity_of, capacity * sizeof *fresh);
-        if (!fresh) {
-            return ILSA_ERR_MEMORY;
-        }
-        c->matrix.sensitivity_of = fresh;
-        c->sensitivity_capacity = (int)capacity;
-    }
+/* Sets what a solve begins with in each numbered cell, its sensitivity included. */
+static void begin_cells(coupled *c, const coupled_problem *problem) {
     for (int k = 0; k < c->cells.count; k++) {
         c->matrix.sensitivity_of[k] = -1;
-        c->source_change[k] = c->front_pressure[k] = 0;
+        c->source_change[k] = c->pressure_change[k] = 0;
         c->matrix.self_correction[k] =
             problem->self_correction ? problem->self_correction[c->cells.cell[k]] : 0;
     }
@@ -372,44 +359,35 @@ static ilsa_status find_sensitivities(coupled *c, const coupled_problem *problem
             c->matrix.sensitivity_of[k] = r;
         }
     }
-    return ILSA_OK;
 }
 
 static ilsa_status set_box(const coupled_problem *problem) {
     const grid *g = problem->g;
     box part = ilsai_box_fold(g, &problem->footprint);
-    return ilsai_elasticity_set_box(problem->e, (int)ilsai_box_columns(&part),
-                                    (int)ilsai_box_rows(&part), ilsai_grid_about_x(g),
+    return ilsai_elasticity_set_box(problem->elastic, &part, ilsai_grid_about_x(g),
                                     ilsai_grid_about_y(g));
 }
 
 ilsa_status ilsai_coupled_solve(coupled *c, const coupled_problem *problem,
                                 coupled_counts *counts) {
-    ilsa_status status =
-        ilsai_unknowns_set(&c->cells, problem->g, &problem->footprint, problem->kind);
-    if (status != ILSA_OK || reserve(c, c->cells.count) != ILSA_OK) {
-        return ILSA_ERR_MEMORY;
-    }
-    if (set_box(problem) != ILSA_OK) {
-        return ILSA_ERR_MEMORY;
-    }
+    ILSAI_TRY(ilsai_unknowns_set(&c->cells, problem->g, &problem->footprint, problem->kind));
+    ILSAI_TRY(reserve(c, c->cells.count));
+    ILSAI_TRY(set_box(problem));
     c->matrix.g = problem->g;
-    c->matrix.a = &c->cells;
-    c->matrix.f = &c->fluid;
-    c->matrix.e = problem->e;
+    c->matrix.cells = &c->cells;
+    c->matrix.lubrication = &c->lubrication;
+    c->matrix.elastic = problem->elastic;
     c->matrix.sensitivity = problem->sensitivity_count > 0 ? problem->sensitivity : NULL;
-    if (find_sensitivities(c, problem) != ILSA_OK) {
-        return ILSA_ERR_MEMORY;
-    }
+    begin_cells(c, problem);
     if (problem->contact.state) {
-        contact faces = contact_of(c, problem, 0);
+        contact faces = contact_of(c, problem, false);
         ilsai_contact_begin(&faces);
     }
-    c->matrix.threads = c->fluid.threads = problem->threads;
-    ilsai_elasticity_share(problem->e, problem->threads);
+    c->matrix.threads = problem->threads;
+    problem->elastic->threads = problem->threads;
     c->matrix.products = 0;
     c->matrix.seconds_product = c->matrix.seconds_preconditioner = 0;
-    status = newton(c, problem, counts);
+    ilsa_status status = newton(c, problem, counts);
     counts->products += c->matrix.products;
     counts->seconds_product += c->matrix.seconds_product;
     counts->seconds_preconditioner += c->matrix.seconds_preconditioner;

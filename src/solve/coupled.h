@@ -1,6 +1,8 @@
 /*
- * The coupled system of elasticity and lubrication in one step (4.4) to (4.8): Newton's method on
- * the widths of the channel cells and the pressures of the tip cells, the tip widths given.
+ * The coupled system of elasticity and lubrication in one pass of a step, Dontsov and Peirce 2017,
+ * (4.4) to (4.8). Newton's method finds the widths of the channel cells and the pressures of the
+ * tip cells. The widths of the tip cells are given by the front; they and the leak-off at the front
+ * may follow the widths of the survey cells through sensitivities.
  */
 #ifndef ILSAI_COUPLED_H
 #define ILSAI_COUPLED_H
@@ -12,29 +14,31 @@
 
 typedef struct coupled coupled;
 
-/* Room for a mesh of nx by ny cells. NULL on failure. */
+/* Makes room for a mesh of mesh->nx by mesh->ny cells. NULL on failure. */
 coupled *ilsai_coupled_create(const ilsa_mesh_def *mesh);
 void ilsai_coupled_destroy(coupled **c);
 
-/* All arrays are over the mesh; only representative cells are read and written. */
+/* All arrays are over the mesh. Only representative cells are read and written. */
 typedef struct coupled_problem {
     const grid *g;
-    elasticity *e;
-    box footprint;                  /* the numbered cells and their images */
+    elasticity *elastic;
+    const fluid *fluid;
+    const ilsa_material_def *material; /* that the fluid has its parameters from */
+    double dt;
+    box footprint;                  /* the bounding box of the wet cells and their images */
     const unsigned char *kind;      /* ILSA_CELL_EMPTY cells take no part */
     const double *sigma;            /* far-field stress */
     const double *width_old;        /* at the start of the step */
     const double *source_term;      /* S of (4.4): injected less leaked in the step, per area */
-    const double *self_correction;  /* what the self term lacks in channel cells; NULL: nothing */
-    const sensitivity *sensitivity; /* of cells at the front to the widths, NULL: none */
+    const double *self_correction;  /* what the self terms of channel cells lack; NULL: nothing */
+    const sensitivity *sensitivity; /* of cells at the front; NULL: none */
     int sensitivity_count;
     contact_fields contact; /* where cells may close */
-    double *width;          /* in: first guess, and the tip widths; out: solution */
-    double *pressure;       /* in: first guess in tip cells; out: solution */
-    double dt, mu_prime;
+    double *width;          /* in: first guess, and the tip widths; out: the solution */
+    double *pressure;       /* in: first guess in tip cells; out: the solution */
     ilsa_linear_solver linear;
-    double tolerance;     /* of the error in width, relative to the largest */
-    thread_pool *threads; /* that share the loops, NULL: none */
+    double tolerance;     /* of the error in width, relative to the largest width */
+    thread_pool *threads; /* that share the loops, or NULL */
 } coupled_problem;
 
 typedef struct coupled_counts {
@@ -43,18 +47,18 @@ typedef struct coupled_counts {
 } coupled_counts;
 
 /*
- * Solves the problem; the pressures of the channel are those before the last change of width, see
- * ilsai_coupled_pressure. counts are added to. ILSA_STEP_REJECTED when Newton's method does not
- * converge, ILSA_ERR_MEMORY, ILSA_ERR_NUMERIC.
+ * Solves the problem and adds to the counts. The pressures of the channel are those before the last
+ * change of the widths; ilsai_coupled_pressure brings them up to date. ILSA_STEP_REJECTED when
+ * Newton's method does not converge; ILSA_ERR_MEMORY.
  */
 ilsa_status ilsai_coupled_solve(coupled *c, const coupled_problem *problem, coupled_counts *counts);
 
-/* Unknowns of the last solve. */
+/* Number of unknowns of the last solve. */
 int ilsai_coupled_unknowns(const coupled *c);
 
 /*
- * pressure = sigma + C width in the channel cells (4.7), with the self terms as they are beside the
- * front, for the widths of the last solve.
+ * Sets the pressures of the open channel cells to sigma + C w, Dontsov and Peirce 2017, (4.7), for
+ * the widths of the last solve, with the self terms corrected beside the front.
  */
 void ilsai_coupled_pressure(coupled *c, const coupled_problem *problem, coupled_counts *counts);
 

@@ -1,14 +1,14 @@
 #include "solve/gmres.h"
 
+#include "base/memory.h"
 #include <cblas.h>
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 struct gmres {
     int restart;
-    size_t room;        /* unknowns there is room for */
+    size_t capacity;    /* unknowns that there is room for */
     double *basis;      /* restart + 1 vectors: orthonormal basis of the Krylov space */
     double *vector;     /* 2 vectors of work */
     double *hessenberg; /* column k at k (restart + 1): upper triangle after the rotations */
@@ -24,12 +24,12 @@ typedef struct krylov {
 } krylov;
 
 gmres *ilsai_gmres_create(int restart) {
-    gmres *g = calloc(1, sizeof *g);
+    gmres *g = ilsai_allocate_zeroed(1, sizeof *g);
     size_t m = (size_t)restart;
-    double *small = malloc(((m + 1) * m + 4 * (m + 1)) * sizeof *small);
+    double *small = ilsai_allocate((m + 1) * m + 4 * (m + 1), sizeof *small);
     if (!g || !small) {
-        free(g);
-        free(small);
+        ilsai_release(g);
+        ilsai_release(small);
         return NULL;
     }
     g->restart = restart;
@@ -42,41 +42,28 @@ gmres *ilsai_gmres_create(int restart) {
 }
 
 void ilsai_gmres_destroy(gmres **g) {
-    if (!*g)
+    if (!*g) {
         return;
-    free((*g)->basis);
-    free((*g)->vector);
-    free((*g)->hessenberg);
-    free(*g);
+    }
+    ilsai_release((*g)->basis);
+    ilsai_release((*g)->vector);
+    ilsai_release((*g)->hessenberg);
+    ilsai_release(*g);
     *g = NULL;
 }
 
 ilsa_status ilsai_gmres_reserve(gmres *g, size_t n) {
-    if (n <= g->room)
-        return ILSA_OK;
-    size_t room = g->room + g->room / 2;
-    if (room < n)
-        room = n;
-    double *basis = malloc(((size_t)g->restart + 1) * room * sizeof *basis);
-    double *vector = malloc(2 * room * sizeof *vector);
-    if (!basis || !vector) {
-        free(basis);
-        free(vector);
-        return ILSA_ERR_MEMORY;
-    }
-    free(g->basis);
-    free(g->vector);
-    g->basis = basis;
-    g->vector = vector;
-    g->room = room;
-    return ILSA_OK;
+    const grown_array arrays[] = {{&g->basis, ((size_t)g->restart + 1) * sizeof *g->basis},
+                                  {&g->vector, 2 * sizeof *g->vector}};
+    return ilsai_grow(n, &g->capacity, arrays, sizeof arrays / sizeof *arrays);
 }
 
 /* The plain sum of squares is several times faster than dnrm2, which serves where it fails. */
 static double norm(int n, const double *x) {
     double squares = cblas_ddot(n, x, 1, x, 1);
-    if (squares > 1e-280 && squares < 1e280)
+    if (squares > 1e-280 && squares < 1e280) {
         return sqrt(squares);
+    }
     return isnan(squares) ? squares : cblas_dnrm2(n, x, 1);
 }
 
@@ -110,8 +97,9 @@ static double orthogonalise(const krylov *s, int count, double *w, double *h) {
     memset(h, 0, (size_t)count * sizeof *h);
     project_out(s, count, w, h);
     double left = norm(s->n, w), before = hypot(left, norm(count, h));
-    if (left >= 0.1 * before)
+    if (left >= 0.1 * before) {
         return left;
+    }
     project_out(s, count, w, h);
     left = norm(s->n, w);
     return left <= DBL_EPSILON * before ? 0 : left;
@@ -161,16 +149,18 @@ static int extend(const krylov *s, int *k, double target) {
     double *h = g->hessenberg + (size_t)*k * ((size_t)g->restart + 1);
     apply(s, basis_vector(s, *k), w);
     double below = orthogonalise(s, *k + 1, w, h), size = hypot(below, norm(*k + 1, h));
-    if (!isfinite(size))
+    if (!isfinite(size)) {
         return CYCLE_BROKEN;
+    }
     double kept = g->rhs[*k];
     if (rotate(g, *k, h, below) <= DBL_EPSILON * size) {
         g->rhs[*k] = kept;
         return CYCLE_BROKEN;
     }
     ++*k;
-    if (below == 0 || fabs(g->rhs[*k]) <= target)
+    if (below == 0 || fabs(g->rhs[*k]) <= target) {
         return CYCLE_DONE;
+    }
     cblas_dscal(s->n, 1 / below, w, 1);
     return CYCLE_GOES_ON;
 }
@@ -186,8 +176,9 @@ static int cycle(const krylov *s, double beta, double target, int products, doub
         state = extend(s, &k, target);
         result->iterations++;
     }
-    if (k > 0)
+    if (k > 0) {
         add_correction(s, k, x);
+    }
     result->residual = fabs(g->rhs[k]);
     return state;
 }
@@ -206,18 +197,20 @@ gmres_result ilsai_gmres_solve(gmres *g, size_t n, gmres_operator *A, gmres_oper
                                int max_iterations) {
     krylov s = {g, (int)n, A, M, context};
     double size = norm(s.n, b), beta = size, target = tolerance * size;
-    gmres_result result = {0, beta, 0};
+    gmres_result result = {0, beta, false};
     memset(x, 0, n * sizeof *x);
     memcpy(g->basis, b, n * sizeof *b);
     while (isfinite(beta) && beta > target && result.iterations < max_iterations) {
         int state = cycle(&s, beta, target, max_iterations - result.iterations, x, &result);
-        if (state != CYCLE_GOES_ON || result.iterations + 1 >= max_iterations)
+        if (state != CYCLE_GOES_ON || result.iterations + 1 >= max_iterations) {
             break;
+        }
         beta = result.residual = true_residual(&s, b, x);
         result.iterations++;
     }
     result.converged = isfinite(size) && result.residual <= target && isfinite(norm(s.n, x));
-    if (size > 0)
+    if (size > 0) {
         result.residual /= size;
+    }
     return result;
 }

@@ -1,97 +1,107 @@
 #include "solve/jacobian.h"
 
 #include "base/clock.h"
+#include "base/error.h"
+#include "base/memory.h"
 #include "base/tuning.h"
 #include <cblas.h>
 #include <ilsa/solver.h>
 #include <lapacke.h>
 #include <math.h>
-#include <stdlib.h>
+#include <stdbool.h>
 #include <string.h>
 
 /*
- * The spring of a cell, over 1 / C(0, 0): what C^-1 is on average over the waves that a step's flow
- * does not level out.
+ * In the preconditioner elasticity is a spring in every cell, of this many times 1 / C_0, where C_0
+ * is the entry of a cell with itself. That is the mean of C^-1 over the waves of pressure that the
+ * flow of a step does not level out.
  */
 #define JACOBIAN_SPRING 3.0
-/* What of it holds the pressure of a closed cell, from which fluid hardly moves, to where it was.
- */
+/* The part of that spring which holds the pressure of a closed cell to its value when it closed.
+ * Hardly any fluid moves there, so that the pressure would be left undetermined. */
 #define JACOBIAN_SOFT 1e-6
-/* In the preconditioner: the spring of a cell that drains, over all that pulls at its pressure. */
+/* In the preconditioner the spring of a draining cell is this many times the sum of its other
+ * springs and of the conductances around it. */
 #define JACOBIAN_STIFF 1e6
 
 void ilsai_jacobian_destroy(jacobian *m) {
-    free(m->width);
-    free(m->pressure);
-    free(m->full);
-    free(m->influence);
-    free(m->pivots);
-    free(m->sensitivity_of);
-    free(m->self_correction);
-    free(m->place);
-    free(m->weight);
-    ilsai_multigrid_destroy(&m->pressures);
-    ilsai_near_field_destroy(&m->widths);
+    ilsai_release(m->width);
+    ilsai_release(m->pressure);
+    ilsai_release(m->full);
+    ilsai_release(m->influence);
+    ilsai_release(m->pivots);
+    ilsai_release(m->sensitivity_of);
+    ilsai_release(m->self_correction);
+    ilsai_release(m->place);
+    ilsai_release(m->weight);
+    ilsai_multigrid_destroy(&m->multigrid);
+    ilsai_near_field_destroy(&m->near_field);
     memset(m, 0, sizeof *m);
 }
 
-/* Closed cells answer to nothing. */
+/* The sensitivity of numbered cell k. NULL: it has none, as a draining or closed cell. */
 static const sensitivity *sensitivity_of(const jacobian *m, int k) {
-    int answers = m->a->unknown[k] == UNKNOWN_WIDTH || m->a->unknown[k] == UNKNOWN_PRESSURE;
-    return m->sensitivity && answers && m->sensitivity_of[k] >= 0
+    bool open = m->cells->unknown[k] == UNKNOWN_WIDTH || m->cells->unknown[k] == UNKNOWN_PRESSURE;
+    return m->sensitivity && open && m->sensitivity_of[k] >= 0
                ? &m->sensitivity[m->sensitivity_of[k]]
                : NULL;
 }
 
 /* Whether the width of numbered cell k is an unknown. */
-static int is_free(const jacobian *m, int k) {
-    return m->a->unknown[k] == UNKNOWN_WIDTH;
+static bool is_free(const jacobian *m, int k) {
+    return m->cells->unknown[k] == UNKNOWN_WIDTH;
 }
 
-/* Whether its pressure is, that of a tip cell or a closed one. */
-static int has_pressure(const jacobian *m, int k) {
-    return m->a->unknown[k] >= UNKNOWN_PRESSURE;
+/* Whether its pressure is an unknown, as in a tip cell and in a closed cell. */
+static bool has_pressure(const jacobian *m, int k) {
+    return m->cells->unknown[k] >= UNKNOWN_PRESSURE;
 }
 
-/* What a pressure takes of a cell where elasticity is a spring: see JACOBIAN_SPRING. */
+/* The entry of C between a cell and itself, that of the first numbered cell for all. */
+static double self_entry(const jacobian *m) {
+    return ilsai_elasticity_self_entry(m->elastic, m->cells->cell[0] % m->g->nx,
+                                       m->cells->cell[0] / m->g->nx);
+}
+
+/* Width that a unit of pressure brings where elasticity is a spring, see JACOBIAN_SPRING. */
 static double spring_of(const jacobian *m) {
-    return JACOBIAN_SPRING / ilsai_elasticity_entry(m->e, 0, 0);
+    return JACOBIAN_SPRING / self_entry(m);
 }
 
-double ilsai_jacobian_without_width(const jacobian *m, int k) {
-    int unknown = m->a->unknown[k];
-    return unknown == UNKNOWN_LEAK      ? -1
+double ilsai_jacobian_extra_diagonal(const jacobian *m, int k) {
+    int unknown = m->cells->unknown[k];
+    return unknown == UNKNOWN_RETAINED  ? -1
            : unknown == UNKNOWN_CONTACT ? JACOBIAN_SOFT * spring_of(m)
                                         : 0;
 }
 
-/* Sum of a sensitivity's weights times the changes of the widths it answers to. */
-static double respond(const jacobian *m, const sensitivity *r, const double *weight,
-                      const double *x) {
+/* The change for changes x of the unknowns, given the derivatives of a sensitivity. */
+static double change_by(const jacobian *m, const sensitivity *r, const double *derivative,
+                        const double *x) {
     double sum = 0;
-    for (int p = 0; r && p < r->count; p++) {
-        int number = m->a->number[r->from[p]];
-        sum += is_free(m, number) ? weight[p] * x[number] : 0;
+    for (int p = 0; p < r->count; p++) {
+        int number = m->cells->number[r->from[p]];
+        sum += is_free(m, number) ? derivative[p] * x[number] : 0;
     }
     return sum;
 }
 
-double ilsai_jacobian_tip_width(const jacobian *m, int k, const double *x) {
+double ilsai_jacobian_width_change(const jacobian *m, int k, const double *x) {
     const sensitivity *r = sensitivity_of(m, k);
-    return r ? respond(m, r, r->width, x) : 0;
+    return r ? change_by(m, r, r->width, x) : 0;
 }
 
-double ilsai_jacobian_tip_source(const jacobian *m, int k, const double *x) {
+double ilsai_jacobian_source_change(const jacobian *m, int k, const double *x) {
     const sensitivity *r = sensitivity_of(m, k);
-    return r ? respond(m, r, r->source_term, x) : 0;
+    return r ? change_by(m, r, r->source_term, x) : 0;
 }
 
-double ilsai_jacobian_front_pressure(const jacobian *m, int k, const double *x) {
+double ilsai_jacobian_pressure_change(const jacobian *m, int k, const double *x) {
     const sensitivity *r = sensitivity_of(m, k);
-    return r ? respond(m, r, r->pressure, x) : 0;
+    return r ? change_by(m, r, r->pressure, x) : 0;
 }
 
-/* A loop over the numbered cells: what a product or the preconditioner takes and gives. */
+/* A loop over the numbered cells, which reads the vector x or writes y. */
 typedef struct loop {
     jacobian *m;
     const double *x;
@@ -100,14 +110,15 @@ typedef struct loop {
 
 static void share_cells(pool_function *function, jacobian *m, const double *x, double *y) {
     loop l = {m, x, y};
-    ilsai_thread_pool_run(m->threads, function, &l, m->a->count, ILSAI_SHARE_CELLS);
+    ilsai_thread_pool_run(m->threads, function, &l, m->cells->count, ILSAI_SHARE_CELLS);
 }
 
 static void set_widths(void *context, int first, int end) {
     const loop *l = context;
     const jacobian *m = l->m;
     for (int k = first; k < end; k++) {
-        m->width[m->a->cell[k]] = is_free(m, k) ? l->x[k] : ilsai_jacobian_tip_width(m, k, l->x);
+        m->width[m->cells->cell[k]] =
+            is_free(m, k) ? l->x[k] : ilsai_jacobian_width_change(m, k, l->x);
     }
 }
 
@@ -115,23 +126,25 @@ static void complete_pressures(void *context, int first, int end) {
     const loop *l = context;
     const jacobian *m = l->m;
     for (int k = first; k < end; k++) {
-        double *pressure = &m->pressure[m->a->cell[k]];
+        double *pressure = &m->pressure[m->cells->cell[k]];
         if (is_free(m, k)) {
             *pressure +=
-                m->self_correction[k] * l->x[k] + ilsai_jacobian_front_pressure(m, k, l->x);
+                m->self_correction[k] * l->x[k] + ilsai_jacobian_pressure_change(m, k, l->x);
         } else if (has_pressure(m, k)) {
             *pressure = l->x[k];
         }
     }
 }
 
-/* Pressure changes that the width changes x of the channel cells bring about, and the tip's own. */
+/* Sets m->width and m->pressure to the changes of widths and pressures for changes x of the
+ * unknowns. */
 static void apply_elasticity(jacobian *m, const double *x) {
     share_cells(set_widths, m, x, NULL);
     double start = ilsai_clock();
-    box part = ilsai_box_fold(m->g, &m->a->footprint);
+    box part = ilsai_box_fold(m->g, &m->cells->footprint);
     size_t corner = (size_t)ilsai_grid_cell(m->g, part.x0, part.y0);
-    ilsai_elasticity_multiply(m->e, m->width + corner, m->pressure + corner, (size_t)m->g->nx);
+    ilsai_elasticity_multiply(m->elastic, m->width + corner, m->pressure + corner,
+                              (size_t)m->g->nx);
     m->seconds_product += ilsai_clock() - start;
     m->products++;
     share_cells(complete_pressures, m, x, NULL);
@@ -140,25 +153,26 @@ static void apply_elasticity(jacobian *m, const double *x) {
 static void clear_widths(void *context, int first, int end) {
     const loop *l = context;
     for (int k = first; k < end; k++) {
-        l->m->width[l->m->a->cell[k]] = 0;
+        l->m->width[l->m->cells->cell[k]] = 0;
     }
 }
 
 static void balance_volumes(void *context, int first, int end) {
     const loop *l = context;
     const jacobian *m = l->m;
-    const unknowns *a = m->a;
+    const unknowns *cells = m->cells;
     for (int k = first; k < end; k++) {
-        double w = m->width[a->cell[k]], from_width = 0;
-        double from_pressure = ilsai_lubrication_inflow(m->f, a, m->pressure, k);
+        double w = m->width[cells->cell[k]], from_width = 0;
+        double from_pressure =
+            ilsai_lubrication_inflow_change(m->lubrication, cells, m->pressure, k);
         for (int face = 0; face < GRID_FACES; face++) {
-            int at = GRID_FACES * k + face, other = a->neighbour[at];
+            int at = GRID_FACES * k + face, other = cells->neighbour[at];
             if (other >= 0) {
-                from_width += m->f->slope[at] * (w + m->width[a->cell[other]]);
+                from_width += m->lubrication->by_width[at] * (w + m->width[cells->cell[other]]);
             }
         }
-        double own = is_free(m, k) ? w : w + ilsai_jacobian_without_width(m, k) * l->x[k];
-        l->y[k] = own - from_width - from_pressure - ilsai_jacobian_tip_source(m, k, l->x);
+        double own = is_free(m, k) ? w : w + ilsai_jacobian_extra_diagonal(m, k) * l->x[k];
+        l->y[k] = own - from_width - from_pressure - ilsai_jacobian_source_change(m, k, l->x);
     }
 }
 
@@ -169,91 +183,49 @@ void ilsai_jacobian_multiply(void *context, const double *x, double *y) {
     share_cells(clear_widths, m, x, NULL);
 }
 
-/* What the self term of numbered cell k lacks, its own part in the front's move included. */
+/* What the self term of numbered cell k lacks, less what the front takes of it when the width of
+ * the cell itself moves it. */
 static double corrected_self(const jacobian *m, int k) {
     const sensitivity *r = sensitivity_of(m, k);
     double sum = m->self_correction[k];
     for (int p = 0; r && p < r->count; p++) {
-        sum += r->from[p] == m->a->cell[k] ? r->pressure[p] : 0;
+        sum += r->from[p] == m->cells->cell[k] ? r->pressure[p] : 0;
     }
     return sum;
 }
 
-static ilsa_status reserve(double **array, size_t *capacity, size_t size) {
-    if (size > *capacity) {
-        size_t grown = size + size / 2;
-        double *fresh = malloc(grown * sizeof *fresh);
-        if (!fresh) {
-            return ILSA_ERR_MEMORY;
-        }
-        free(*array);
-        *array = fresh;
-        *capacity = grown;
-    }
-    return ILSA_OK;
-}
-
-static ilsa_status reserve_pivots(jacobian *m) {
-    size_t size = (size_t)m->a->count;
-    if (size > m->pivot_capacity) {
-        size_t grown = size + size / 2;
-        int *fresh = malloc(grown * sizeof *fresh);
-        if (!fresh) {
-            return ILSA_ERR_MEMORY;
-        }
-        free(m->pivots);
-        m->pivots = fresh;
-        m->pivot_capacity = grown;
-    }
-    return ILSA_OK;
-}
-
 /* ---- Preconditioner ----------------------------------------------------------------------- */
 
-/* The part of a cell on the axis of a folded scene, of its faces across, that is in the fold. */
-static double half_on_axis(int mirror, int count, int at, int first) {
+/* The part of a cell, or of a face that the axis cuts, which lies on the solved side of the axis.
+ */
+static double half_on_axis(bool mirror, int count, int at, int first) {
     return mirror && count % 2 && at == first ? 0.5 : 1;
 }
 
-static ilsa_status reserve_places(jacobian *m) {
-    size_t count = (size_t)m->a->count;
-    if (count > m->place_capacity) {
-        size_t grown = count + count / 2;
-        size_t *place = realloc(m->place, grown * sizeof *place);
-        m->place = place ? place : m->place;
-        double *weight = realloc(m->weight, grown * sizeof *weight);
-        m->weight = weight ? weight : m->weight;
-        if (!place || !weight) {
-            return ILSA_ERR_MEMORY;
-        }
-        m->place_capacity = grown;
-    }
-    return ILSA_OK;
-}
-
-/* Places and weights of the numbered cells on the rectangle of the preconditioner. */
+/* Sets where the numbered cells lie on the rectangle of the preconditioner, and their weights. */
 static void place_cells(void *context, int first, int end) {
     jacobian *m = ((const loop *)context)->m;
     const grid *g = m->g;
-    box part = ilsai_box_fold(g, &m->a->footprint);
+    box part = ilsai_box_fold(g, &m->cells->footprint);
     size_t stride = ilsai_box_columns(&part) + 2;
     for (int k = first; k < end; k++) {
-        int i = m->a->cell[k] % g->nx, j = m->a->cell[k] / g->nx;
+        int i = m->cells->cell[k] % g->nx, j = m->cells->cell[k] / g->nx;
         m->place[k] = (size_t)(j - part.y0 + 1) * stride + (size_t)(i - part.x0 + 1);
         m->weight[k] = half_on_axis(g->mirror_x, g->nx, i, g->lo_x) *
                        half_on_axis(g->mirror_y, g->ny, j, g->lo_y);
     }
 }
 
-/* The pressure of a cell that drains is as its neighbours' widths have it: no flow changes it. */
-static double pinned(const jacobian *m, int k, double spring) {
-    if (m->a->unknown[k] != UNKNOWN_LEAK) {
-        return ilsai_jacobian_without_width(m, k);
+/* The spring of a cell whose width is given. The pressure of a draining cell follows from the
+ * widths around it and no flow changes it, so that its spring is a stiff one. */
+static double spring_of_given_width(const jacobian *m, int k, double spring) {
+    if (m->cells->unknown[k] != UNKNOWN_RETAINED) {
+        return ilsai_jacobian_extra_diagonal(m, k);
     }
-    const double *conductance = m->f->conductance + (size_t)GRID_FACES * (size_t)k;
+    const double *by_pressure = m->lubrication->by_pressure + (size_t)GRID_FACES * (size_t)k;
     double pull = spring;
     for (int face = 0; face < GRID_FACES; face++) {
-        pull += conductance[face];
+        pull += by_pressure[face];
     }
     return JACOBIAN_STIFF * pull;
 }
@@ -261,49 +233,53 @@ static double pinned(const jacobian *m, int k, double spring) {
 static void set_flow(void *context, int first, int end) {
     jacobian *m = ((const loop *)context)->m;
     const grid *g = m->g;
-    multigrid_level *l = &m->pressures.level[0];
+    multigrid_level *l = &m->multigrid.level[0];
     double spring = spring_of(m);
     for (int k = first; k < end; k++) {
-        const double *conductance = m->f->conductance + (size_t)GRID_FACES * (size_t)k;
-        int i = m->a->cell[k] % g->nx, j = m->a->cell[k] / g->nx;
+        const double *by_pressure = m->lubrication->by_pressure + (size_t)GRID_FACES * (size_t)k;
+        int i = m->cells->cell[k] % g->nx, j = m->cells->cell[k] / g->nx;
         size_t at = m->place[k];
-        l->right[at] = half_on_axis(g->mirror_y, g->ny, j, g->lo_y) * conductance[GRID_RIGHT];
-        l->up[at] = half_on_axis(g->mirror_x, g->nx, i, g->lo_x) * conductance[GRID_UP];
-        l->spring[at] = m->weight[k] * (is_free(m, k) ? spring : pinned(m, k, spring));
+        l->right[at] = half_on_axis(g->mirror_y, g->ny, j, g->lo_y) * by_pressure[GRID_RIGHT];
+        l->up[at] = half_on_axis(g->mirror_x, g->nx, i, g->lo_x) * by_pressure[GRID_UP];
+        l->spring[at] =
+            m->weight[k] * (is_free(m, k) ? spring : spring_of_given_width(m, k, spring));
     }
 }
 
 static void set_open_cells(void *context, int first, int end) {
     jacobian *m = ((const loop *)context)->m;
     for (int k = first; k < end; k++) {
-        m->widths.open[m->place[k]] = is_free(m, k);
-        m->widths.extra[m->place[k]] = is_free(m, k) ? corrected_self(m, k) : 0;
+        m->near_field.open[m->place[k]] = is_free(m, k);
+        m->near_field.extra[m->place[k]] = is_free(m, k) ? corrected_self(m, k) : 0;
     }
 }
 
+/* One stencil serves all cells, that of the first numbered one: a preconditioner may be inexact. */
 static void set_near_field(jacobian *m) {
-    near_field *n = &m->widths;
-    n->mirror_x = m->g->mirror_x ? m->g->nx % 2 : -1;
-    n->mirror_y = m->g->mirror_y ? m->g->ny % 2 : -1;
-    n->self = ilsai_elasticity_entry(m->e, 0, 0);
-    n->beside = ilsai_elasticity_entry(m->e, 1, 0);
-    n->above = ilsai_elasticity_entry(m->e, 0, 1);
-    n->corner = ilsai_elasticity_entry(m->e, 1, 1);
+    near_field *n = &m->near_field;
+    int i = m->cells->cell[0] % m->g->nx, j = m->cells->cell[0] / m->g->nx;
+    n->about_x = ilsai_grid_about_x(m->g);
+    n->about_y = ilsai_grid_about_y(m->g);
+    n->self = self_entry(m);
+    n->beside = ilsai_elasticity_entry(m->elastic, i, j, i + 1, j);
+    n->above = ilsai_elasticity_entry(m->elastic, i, j, i, j + 1);
+    n->corner = ilsai_elasticity_entry(m->elastic, i, j, i + 1, j + 1);
     share_cells(set_open_cells, m, NULL, NULL);
 }
 
 ilsa_status ilsai_jacobian_set_preconditioner(jacobian *m) {
     double start = ilsai_clock();
-    box part = ilsai_box_fold(m->g, &m->a->footprint);
+    box part = ilsai_box_fold(m->g, &m->cells->footprint);
     int nx = (int)ilsai_box_columns(&part), ny = (int)ilsai_box_rows(&part);
-    m->pressures.threads = m->widths.threads = m->threads;
-    if (reserve_places(m) != ILSA_OK || ilsai_multigrid_shape(&m->pressures, nx, ny) != ILSA_OK ||
-        ilsai_near_field_shape(&m->widths, nx, ny) != ILSA_OK) {
-        return ILSA_ERR_MEMORY;
-    }
+    m->multigrid.threads = m->near_field.threads = m->threads;
+    const grown_array arrays[] = {ILSAI_GROWN(m->place), ILSAI_GROWN(m->weight)};
+    ILSAI_TRY(ilsai_grow((size_t)m->cells->count, &m->place_capacity, arrays,
+                         sizeof arrays / sizeof *arrays));
+    ILSAI_TRY(ilsai_multigrid_shape(&m->multigrid, nx, ny));
+    ILSAI_TRY(ilsai_near_field_shape(&m->near_field, nx, ny));
     share_cells(place_cells, m, NULL, NULL);
     share_cells(set_flow, m, NULL, NULL);
-    ilsai_multigrid_build(&m->pressures);
+    ilsai_multigrid_build(&m->multigrid);
     set_near_field(m);
     m->seconds_preconditioner += ilsai_clock() - start;
     return ILSA_OK;
@@ -312,7 +288,7 @@ ilsa_status ilsai_jacobian_set_preconditioner(jacobian *m) {
 static void lay_out(void *context, int first, int end) {
     const loop *l = context;
     for (int k = first; k < end; k++) {
-        l->m->pressures.level[0].b[l->m->place[k]] = l->m->weight[k] * l->x[k];
+        l->m->multigrid.level[0].b[l->m->place[k]] = l->m->weight[k] * l->x[k];
     }
 }
 
@@ -320,7 +296,7 @@ static void hand_over(void *context, int first, int end) {
     jacobian *m = ((const loop *)context)->m;
     for (int k = first; k < end; k++) {
         size_t at = m->place[k];
-        m->widths.y[at] = is_free(m, k) ? m->pressures.level[0].y[at] : 0;
+        m->near_field.y[at] = is_free(m, k) ? m->multigrid.level[0].y[at] : 0;
     }
 }
 
@@ -329,53 +305,55 @@ static void read_out(void *context, int first, int end) {
     const jacobian *m = l->m;
     for (int k = first; k < end; k++) {
         size_t at = m->place[k];
-        double pressure = m->pressures.level[0].y[at];
-        l->y[k] = is_free(m, k) ? m->widths.x[at]
+        double pressure = m->multigrid.level[0].y[at];
+        l->y[k] = is_free(m, k) ? m->near_field.x[at]
                   : has_pressure(m, k)
                       ? pressure
-                      : -m->pressures.level[0].spring[at] / m->weight[k] * pressure;
+                      : -m->multigrid.level[0].spring[at] / m->weight[k] * pressure;
     }
 }
 
 /*
- * The matrix is nearly (d - dt A) C: on pressures C^-1 is a spring d wherever flow does not level
- * them out. So first pressures by multigrid, then widths by the near field of C; where the pressure
- * is the unknown it stays, and in cells that drain the spring has taken what leaks less.
+ * The matrix is nearly (d - dt A) C, because C^-1 acts on pressures as a spring d wherever flow
+ * does not level them out. So multigrid finds pressures first, and the near field of C finds widths
+ * from them. Where the pressure is the unknown it is the result. In a draining cell the result is
+ * the fluid that its spring takes up, with the sign of the part of the leak-off that it retains.
  */
 void ilsai_jacobian_precondition(void *context, const double *x, double *y) {
     jacobian *m = context;
     double start = ilsai_clock();
     share_cells(lay_out, m, x, NULL);
-    ilsai_multigrid_cycle(&m->pressures);
+    ilsai_multigrid_cycle(&m->multigrid);
     share_cells(hand_over, m, NULL, NULL);
-    ilsai_near_field_solve(&m->widths);
+    ilsai_near_field_solve(&m->near_field);
     share_cells(read_out, m, NULL, y);
     m->seconds_preconditioner += ilsai_clock() - start;
 }
 
 /* ---- Full matrix -------------------------------------------------------------------------- */
 
-/* C between cells a and b, b's images included. */
+/* The entry of C between numbered cells a and b, with those of the images of b added. */
 static double folded_entry(const jacobian *m, int a, int b) {
-    int image[4], nx = m->g->nx, cell = m->a->cell[b], here = m->a->cell[a];
+    int image[4], nx = m->g->nx, cell = m->cells->cell[b], here = m->cells->cell[a];
     int count = ilsai_grid_images(m->g, cell % nx, cell / nx, image);
     double sum = 0;
     for (int c = 0; c < count; c++) {
-        sum += ilsai_elasticity_entry(m->e, here % nx - image[c] % nx, here / nx - image[c] / nx);
+        sum +=
+            ilsai_elasticity_entry(m->elastic, here % nx, here / nx, image[c] % nx, image[c] / nx);
     }
     return sum;
 }
 
-/* Adds weights of a sensitivity, times value, to a row. */
+/* Adds value times the derivatives of a sensitivity to a row. */
 static void add_sensitivity(const jacobian *m, double *out, const sensitivity *r,
-                            const double *weight, double value) {
+                            const double *derivative, double value) {
     for (int p = 0; r && p < r->count; p++) {
-        int number = m->a->number[r->from[p]];
-        out[number] += is_free(m, number) ? value * weight[p] : 0;
+        int number = m->cells->number[r->from[p]];
+        out[number] += is_free(m, number) ? value * derivative[p] : 0;
     }
 }
 
-/* Adds what the width of an numbered cell is, times value, to a row. */
+/* Adds value times the width of numbered cell k, in terms of the unknowns, to a row. */
 static void add_width(const jacobian *m, double *out, int k, double value) {
     const sensitivity *r = sensitivity_of(m, k);
     if (is_free(m, k)) {
@@ -386,23 +364,20 @@ static void add_width(const jacobian *m, double *out, int k, double value) {
 }
 
 /*
- * Where a pressure is the unknown it is, in the full matrix, the pressure over this, a width like
- * the others: pivots are chosen among the unknowns, and must not depend on units.
+ * In the full matrix a pressure that is an unknown is divided by self_entry, so that all unknowns
+ * are widths: pivots are chosen among the unknowns, and the choice must not depend on units.
  */
-static double pressure_unit(const jacobian *m) {
-    return ilsai_elasticity_entry(m->e, 0, 0);
-}
 
-/* What the pressure of numbered cell row is in terms of the unknowns: C with the tips'
- * sensitivities. */
+/* Sets out to the pressure of numbered cell row in terms of the unknowns: a row of C, with the
+ * widths of the tip cells replaced by their sensitivities. */
 static void fill_influence_row(jacobian *m, int row, double *out) {
-    const unknowns *a = m->a;
-    memset(out, 0, (size_t)a->count * sizeof *out);
+    const unknowns *cells = m->cells;
+    memset(out, 0, (size_t)cells->count * sizeof *out);
     if (has_pressure(m, row)) {
-        out[row] = pressure_unit(m);
+        out[row] = self_entry(m);
         return;
     }
-    for (int k = 0; k < a->count; k++) {
+    for (int k = 0; k < cells->count; k++) {
         add_width(m, out, k, folded_entry(m, row, k));
     }
     if (is_free(m, row)) {
@@ -414,12 +389,11 @@ static void fill_influence_row(jacobian *m, int row, double *out) {
 
 ilsa_status ilsai_jacobian_set_influence(jacobian *m) {
     double start = ilsai_clock();
-    size_t n = (size_t)m->a->count, capacity = m->full_capacity;
-    if (reserve(&m->full, &capacity, n * n) != ILSA_OK ||
-        reserve(&m->influence, &m->full_capacity, n * n) != ILSA_OK ||
-        reserve_pivots(m) != ILSA_OK) {
-        return ILSA_ERR_MEMORY;
-    }
+    size_t n = (size_t)m->cells->count;
+    const grown_array squares[] = {ILSAI_GROWN(m->full), ILSAI_GROWN(m->influence)};
+    const grown_array pivots = ILSAI_GROWN(m->pivots);
+    ILSAI_TRY(ilsai_grow(n * n, &m->full_capacity, squares, sizeof squares / sizeof *squares));
+    ILSAI_TRY(ilsai_grow(n, &m->pivot_capacity, &pivots, 1));
     for (size_t row = 0; row < n; row++) {
         fill_influence_row(m, (int)row, m->influence + row * n);
     }
@@ -427,35 +401,36 @@ ilsa_status ilsai_jacobian_set_influence(jacobian *m) {
     return ILSA_OK;
 }
 
-/* Row k of the full matrix, stored as a column of the transpose. */
+/* Sets a row of the full matrix, which is stored as a column of the transpose. */
 static void fill_full_row(jacobian *m, int row) {
-    const unknowns *a = m->a;
-    size_t n = (size_t)a->count;
+    const unknowns *cells = m->cells;
+    size_t n = (size_t)cells->count;
     double *out = m->full + (size_t)row * n, total = 0, diagonal = 1;
     memset(out, 0, n * sizeof *out);
     for (int face = 0; face < GRID_FACES; face++) {
-        int at = GRID_FACES * row + face, other = a->neighbour[at];
+        int at = GRID_FACES * row + face, other = cells->neighbour[at];
         if (other < 0) {
             continue;
         }
-        cblas_daxpy((int)n, -m->f->conductance[at], m->influence + (size_t)other * n, 1, out, 1);
-        add_width(m, out, other, -m->f->slope[at]);
-        diagonal -= m->f->slope[at];
-        total += m->f->conductance[at];
+        cblas_daxpy((int)n, -m->lubrication->by_pressure[at], m->influence + (size_t)other * n, 1,
+                    out, 1);
+        add_width(m, out, other, -m->lubrication->by_width[at]);
+        diagonal -= m->lubrication->by_width[at];
+        total += m->lubrication->by_pressure[at];
     }
     cblas_daxpy((int)n, total, m->influence + (size_t)row * n, 1, out, 1);
     add_width(m, out, row, diagonal);
     const sensitivity *r = sensitivity_of(m, row);
     add_sensitivity(m, out, r, r ? r->source_term : NULL, -1);
     if (!is_free(m, row)) {
-        double unit = has_pressure(m, row) ? pressure_unit(m) : 1;
-        out[row] += unit * ilsai_jacobian_without_width(m, row);
+        double unit = has_pressure(m, row) ? self_entry(m) : 1;
+        out[row] += unit * ilsai_jacobian_extra_diagonal(m, row);
     }
 }
 
 ilsa_status ilsai_jacobian_solve_full(jacobian *m, const double *b, double *x) {
     double start = ilsai_clock();
-    int n = m->a->count;
+    int n = m->cells->count;
     for (int row = 0; row < n; row++) {
         fill_full_row(m, row);
     }
@@ -465,8 +440,8 @@ ilsa_status ilsai_jacobian_solve_full(jacobian *m, const double *b, double *x) {
         LAPACKE_dgetrs_work(LAPACK_COL_MAJOR, 'T', n, 1, m->full, n, m->pivots, x, n);
     }
     for (int k = 0; k < n; k++) {
-        x[k] *= has_pressure(m, k) ? pressure_unit(m) : 1;
+        x[k] *= has_pressure(m, k) ? self_entry(m) : 1;
     }
     m->seconds_preconditioner += ilsai_clock() - start;
-    return info == 0 ? ILSA_OK : ILSA_ERR_NUMERIC;
+    return info == 0 ? ILSA_OK : ILSA_STEP_REJECTED;
 }

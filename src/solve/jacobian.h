@@ -1,78 +1,89 @@
 /*
- * The Newton matrix D - dt A [C_cc, I] of the coupled system: its product through the elasticity
- * product, its preconditioner, and its full form.
+ * The Newton matrix of the coupled system: its product with a vector, its preconditioner, and its
+ * full form for few unknowns. See docs/theory.md, section 8.
  *
- * Columns: the width of a channel cell, the pressure of a tip cell. Rows: the volume balance.
+ * The rows are the volume balances of the numbered cells, Dontsov and Peirce 2017, (4.4). The
+ * columns are the unknowns, see base/unknowns.h: the width of an open channel cell, the pressure of
+ * a tip cell or of a closed one, the retained leak-off of a draining one. With widths alone in the
+ * channel the matrix is D - dt A [C, I], where D is the derivative of the balance by the widths at
+ * given pressures, A the lubrication operator, C the elasticity and I the pressures of tip cells.
  */
 #ifndef ILSAI_JACOBIAN_H
 #define ILSAI_JACOBIAN_H
 
+#include "base/sensitivity.h"
 #include "base/unknowns.h"
 #include "elastic/elasticity.h"
 #include "flow/lubrication.h"
 #include "solve/multigrid.h"
 #include "solve/near_field.h"
 
-/*
- * How the width and the source term of a cell at the front, or the pressure that its own width
- * brings about there, change with the widths of the survey cells that the front is found from.
- */
-enum { SENSITIVITY_PARENTS = 8 };
-typedef struct sensitivity {
-    int cell;
-    int count;
-    int from[SENSITIVITY_PARENTS]; /* mesh cells */
-    double width[SENSITIVITY_PARENTS], source_term[SENSITIVITY_PARENTS],
-        pressure[SENSITIVITY_PARENTS];
-} sensitivity;
-
 typedef struct jacobian {
+    /* What the matrix is made of; the caller's. */
     const grid *g;
-    const unknowns *a;
-    const lubrication *f;
-    elasticity *e;
-    double *width, *pressure; /* work over the mesh; width is zero outside the channel cells */
-    double *full;             /* LAPACK storage of the transpose, factored */
-    double *self_correction;  /* per numbered cell: what its self term of C lacks at the front */
-    const sensitivity *sensitivity;
-    int *sensitivity_of; /* per numbered cell: its sensitivity, or -1 */
-    double *influence;   /* folded C between numbered cells, one row a cell */
+    const unknowns *cells;
+    const lubrication *lubrication;
+    elasticity *elastic;
+    const sensitivity *sensitivity; /* of cells at the front; NULL: there are none */
+    thread_pool *threads;           /* that share the loops, or NULL */
+
+    /* Per numbered cell, set by the caller and released here. */
+    double *self_correction; /* what its self term of C lacks beside the front */
+    int *sensitivity_of;     /* index of its sensitivity, or -1 */
+
+    /* Work over the mesh: changes of widths and of pressures. The widths are zero between calls. */
+    double *width, *pressure;
+
+    /* The preconditioner, on the rectangle of the representative cells of the footprint. */
+    multigrid multigrid;
+    near_field near_field;
+    size_t *place;  /* of each numbered cell in the arrays of both */
+    double *weight; /* the part of each numbered cell on the solved side of the axes */
+    size_t place_capacity;
+
+    /* The full form. */
+    double *influence; /* pressures by the unknowns, a row a numbered cell */
+    double *full;      /* the transpose of the matrix as LAPACK stores it, then its factors */
     int *pivots;
-    size_t full_capacity, pivot_capacity, place_capacity;
-    multigrid pressures; /* the preconditioner, on the rectangle of the representative cells */
-    near_field widths;
-    size_t *place;        /* of each numbered cell in it */
-    double *weight;       /* the part of each that lies in the fold */
-    thread_pool *threads; /* that share the loops, or NULL */
-    long products;
+    size_t full_capacity, pivot_capacity;
+
+    long products; /* counts and seconds, which the caller sets to zero */
     double seconds_product, seconds_preconditioner;
 } jacobian;
 
-/* y = M x, and y = P^-1 x with the preconditioner as it is set: gmres_operator on a jacobian. */
+void ilsai_jacobian_destroy(jacobian *m);
+
+/* Sets y to the matrix times x. A gmres_operator, whose context is a jacobian. */
 void ilsai_jacobian_multiply(void *context, const double *x, double *y);
-void ilsai_jacobian_precondition(void *context, const double *x, double *y);
 
-/* Changes of the width and of the source term of numbered cell k for changes x of the unknowns. */
-double ilsai_jacobian_tip_width(const jacobian *m, int k, const double *x);
-double ilsai_jacobian_tip_source(const jacobian *m, int k, const double *x);
-/*
- * What the unknown of numbered cell k, a tip or closed cell, adds to its own row: 0; or what does
- * not leak; or a spring that holds the pressure of a closed cell, which else were anything where
- * hardly any fluid can leave.
- */
-double ilsai_jacobian_without_width(const jacobian *m, int k);
-/* Change of the pressure in active channel cell k as the front moves and its width stays. */
-double ilsai_jacobian_front_pressure(const jacobian *m, int k, const double *x);
-
-/* Makes the preconditioner for the flow as it is set. ILSA_ERR_MEMORY. */
+/* Makes the preconditioner for the lubrication as it is set. ILSA_ERR_MEMORY. */
 ilsa_status ilsai_jacobian_set_preconditioner(jacobian *m);
 
-/* The influence matrix of the numbered cells, for ilsai_jacobian_solve_full. ILSA_ERR_MEMORY. */
+/* Sets y to the preconditioner's solution for x. A gmres_operator, whose context is a jacobian. */
+void ilsai_jacobian_precondition(void *context, const double *x, double *y);
+
+/* Sets the influence matrix of the numbered cells, for ilsai_jacobian_solve_full. ILSA_ERR_MEMORY.
+ */
 ilsa_status ilsai_jacobian_set_influence(jacobian *m);
 
-/* Solves M x = b by dense LU. ILSA_ERR_NUMERIC if singular. */
+/* Solves M x = b by dense LU. ILSA_STEP_REJECTED if the matrix is singular. */
 ilsa_status ilsai_jacobian_solve_full(jacobian *m, const double *b, double *x);
 
-void ilsai_jacobian_destroy(jacobian *m);
+/*
+ * The changes of numbered cell k, by its sensitivity, for changes x of the unknowns: of the width
+ * of a tip cell, of the source term, and of the pressure in an open channel cell by what its self
+ * term lacks, at a width that stays. Zero for a cell without a sensitivity.
+ */
+double ilsai_jacobian_width_change(const jacobian *m, int k, const double *x);
+double ilsai_jacobian_source_change(const jacobian *m, int k, const double *x);
+double ilsai_jacobian_pressure_change(const jacobian *m, int k, const double *x);
+
+/*
+ * What the unknown of numbered cell k adds to the diagonal of its own row where that unknown is not
+ * the width. It is -1 for retained leak-off, which stays in the cell. It is a weak spring for the
+ * pressure of a closed cell: hardly any fluid moves there, so that the pressure would be left
+ * undetermined. It is 0 for a tip cell.
+ */
+double ilsai_jacobian_extra_diagonal(const jacobian *m, int k);
 
 #endif

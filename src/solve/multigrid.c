@@ -1,7 +1,8 @@
 #include "solve/multigrid.h"
 
+#include "base/error.h"
+#include "base/memory.h"
 #include "base/tuning.h"
-#include <stdlib.h>
 #include <string.h>
 
 /* Conductances this many times larger along one axis have cells joined along that axis alone. */
@@ -19,8 +20,8 @@ static size_t level_size(int nx, int ny) {
 }
 
 void ilsai_multigrid_destroy(multigrid *m) {
-    free(m->pool);
-    free(m->maps);
+    ilsai_release(m->pool);
+    ilsai_release(m->maps);
     memset(m, 0, sizeof *m);
 }
 
@@ -66,7 +67,7 @@ static int joined(int n) {
 static size_t pool_size(int nx, int ny) {
     size_t size = level_size(nx, ny);
     while (nx > 1 || ny > 1) {
-        int along_x = nx >= ny;
+        bool along_x = nx >= ny;
         nx = along_x ? joined(nx) : nx;
         ny = along_x ? ny : joined(ny);
         size += level_size(nx, ny);
@@ -77,28 +78,13 @@ static size_t pool_size(int nx, int ny) {
 static ilsa_status reserve(multigrid *m, int nx, int ny) {
     /* joining along one axis alone keeps the other's border: twice the room is enough */
     size_t size = 2 * pool_size(nx, ny), map_size = 4 * ((size_t)nx + (size_t)ny) + 512;
-    if (size > m->room || map_size > m->map_room) {
-        double *pool = malloc((size + size / 2) * sizeof *pool);
-        int *maps = malloc((map_size + map_size / 2) * sizeof *maps);
-        if (!pool || !maps) {
-            free(pool);
-            free(maps);
-            return ILSA_ERR_MEMORY;
-        }
-        free(m->pool);
-        free(m->maps);
-        m->pool = pool;
-        m->maps = maps;
-        m->room = size + size / 2;
-        m->map_room = map_size + map_size / 2;
-    }
-    return ILSA_OK;
+    const grown_array pool = ILSAI_GROWN(m->pool), maps = ILSAI_GROWN(m->maps);
+    ILSAI_TRY(ilsai_grow(size, &m->pool_capacity, &pool, 1));
+    return ilsai_grow(map_size, &m->maps_capacity, &maps, 1);
 }
 
 ilsa_status ilsai_multigrid_shape(multigrid *m, int nx, int ny) {
-    if (reserve(m, nx, ny) != ILSA_OK) {
-        return ILSA_ERR_MEMORY;
-    }
+    ILSAI_TRY(reserve(m, nx, ny));
     place_level(&m->level[0], nx, ny, m->pool, m->maps);
     memset(m->pool, 0, LEVEL_ARRAYS * level_size(nx, ny) * sizeof *m->pool);
     for (int k = 0; k < nx + ny; k++) {
@@ -155,7 +141,7 @@ static void choose_halving(multigrid_level *l) {
 }
 
 /* How the cells along one axis go into those of the next level. */
-static int set_map(int half, int n, int *into) {
+static int set_map(bool half, int n, int *into) {
     for (int i = 0; i < n; i++) {
         into[i] = i;
     }

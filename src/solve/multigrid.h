@@ -9,6 +9,7 @@
 
 #include "base/thread_pool.h"
 #include <ilsa/status.h>
+#include <stdbool.h>
 #include <stddef.h>
 
 /*
@@ -17,10 +18,10 @@
  */
 typedef struct multigrid_level {
     int nx, ny, stride;
-    int half_x, half_y; /* whether the next level has half the cells along x, along y */
-    double *right, *up; /* conductance of the face to the next cell along x, along y */
-    double *spring;     /* d */
-    double *inverse;    /* of the diagonal; 0 where there is nothing */
+    bool half_x, half_y; /* whether the next level has half the cells along x, along y */
+    double *right, *up;  /* conductance of the face to the next cell along x, along y */
+    double *spring;      /* d */
+    double *inverse;     /* of the diagonal; 0 where there is nothing */
     double *y, *b, *work;
     double *wide_x, *wide_y; /* how many cells of level 0 a column, a row is wide */
     int *into_x, *into_y;    /* the cell of the next level that a column, a row belongs to */
@@ -32,7 +33,7 @@ typedef struct multigrid {
     int levels;
     double *pool;
     int *maps;
-    size_t room, map_room;
+    size_t pool_capacity, maps_capacity;
     thread_pool *threads; /* that share the loops, or NULL */
 } multigrid;
 

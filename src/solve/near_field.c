@@ -1,8 +1,9 @@
 #include "solve/near_field.h"
 
+#include "base/error.h"
+#include "base/memory.h"
 #include "base/tuning.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Steps of the iteration: one more takes the error down by 2.4 on square cells. */
@@ -14,22 +15,14 @@
 enum { NEARFIELD_ARRAYS = 5 };
 
 void ilsai_near_field_destroy(near_field *f) {
-    free(f->extra);
+    ilsai_release(f->extra);
     memset(f, 0, sizeof *f);
 }
 
 ilsa_status ilsai_near_field_shape(near_field *f, int nx, int ny) {
     size_t size = ((size_t)nx + 2) * ((size_t)ny + 2);
-    if (size > f->room) {
-        size_t room = size + size / 2;
-        double *pool = malloc(NEARFIELD_ARRAYS * room * sizeof *pool);
-        if (!pool) {
-            return ILSA_ERR_MEMORY;
-        }
-        free(f->extra);
-        f->extra = pool;
-        f->room = room;
-    }
+    const grown_array pool = {&f->extra, NEARFIELD_ARRAYS * sizeof *f->extra};
+    ILSAI_TRY(ilsai_grow(size, &f->capacity, &pool, 1));
     f->nx = nx;
     f->ny = ny;
     f->stride = nx + 2;
@@ -44,11 +37,11 @@ ilsa_status ilsai_near_field_shape(near_field *f, int nx, int ny) {
 /* The images of a folded scene, in the border. */
 static void set_border(const near_field *f, double *v) {
     size_t stride = (size_t)f->stride;
-    for (size_t j = 1; f->mirror_x >= 0 && j <= (size_t)f->ny; j++) {
-        v[j * stride] = v[j * stride + 1 + (size_t)f->mirror_x];
+    for (size_t j = 1; f->about_x != MIRROR_NONE && j <= (size_t)f->ny; j++) {
+        v[j * stride] = v[j * stride + 1 + (f->about_x == MIRROR_CENTRE)];
     }
-    if (f->mirror_y >= 0) {
-        memcpy(v, v + (1 + (size_t)f->mirror_y) * stride, stride * sizeof *v);
+    if (f->about_y != MIRROR_NONE) {
+        memcpy(v, v + (1 + (size_t)(f->about_y == MIRROR_CENTRE)) * stride, stride * sizeof *v);
     }
 }
 

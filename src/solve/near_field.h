@@ -6,19 +6,20 @@
 #ifndef ILSAI_NEAR_FIELD_H
 #define ILSAI_NEAR_FIELD_H
 
+#include "base/mirror.h"
 #include "base/thread_pool.h"
 #include <ilsa/status.h>
 #include <stddef.h>
 
 typedef struct near_field {
     int nx, ny, stride;
-    int mirror_x, mirror_y; /* -1: none; 0, 1: the cell before the first is the image of this one */
+    mirror_axis about_x, about_y;       /* where the first column and row lie against the axes */
     double self, beside, above, corner; /* entries of C */
     double *extra;                      /* added to self, per cell */
     double *open;                       /* 1 in the cells that take part, 0 elsewhere */
     double *x, *y;                      /* widths out, pressures in; y is overwritten */
     double *step;
-    size_t room;
+    size_t capacity;      /* cells, the border included, that there is room for */
     thread_pool *threads; /* that share the loops, or NULL */
 } near_field;
 

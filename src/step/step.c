@@ -3,6 +3,7 @@
 #include "base/clock.h"
 #include "base/tuning.h"
 #include "flow/contact.h"
+#include "flow/newtonian.h"
 #include "step/accept.h"
 #include <math.h>
 #include <string.h>
@@ -137,7 +138,9 @@ static coupled_problem pose(ilsa_solver *s) {
     double share = fmin(ILSAI_PASS_SHARE, ILSAI_PASS_SHARP * n->tolerance);
     double aim = is_nested(s) ? n->tolerance : fmax(share * t->change, tolerance_now(s, 0));
     return (coupled_problem){.g = &t->g,
-                             .e = n->elastic,
+                             .elastic = n->elastic,
+                             .fluid = &ilsai_newtonian,
+                             .material = &s->model.material,
                              .footprint = t->tips.footprint,
                              .kind = t->cells.kind,
                              .sigma = s->model.sigma,
@@ -147,7 +150,6 @@ static coupled_problem pose(ilsa_solver *s) {
                              .width = t->cells.width,
                              .pressure = t->cells.pressure,
                              .dt = t->dt,
-                             .mu_prime = s->model.material.mu_prime,
                              .linear = s->model.options.linear,
                              .contact = {ilsai_fracture_closure_width(&s->fracture, &s->model),
                                          t->cells.contact, t->cells.leakoff, t->cells.retained},

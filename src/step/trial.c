@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "base/tuning.h"
 #include "flow/contact.h"
+#include "flow/leakoff.h"
 #include "front/geometry.h"
 #include "model/mesh.h"
 #include <math.h>
@@ -70,11 +71,11 @@ typedef struct row_loop {
     const fracture *f;
 } row_loop;
 
-/* Volume leaked per area from a channel cell in the step, (4.8) with the mean over the cell. */
+/* Volume leaked per area from a channel cell in the step. */
 static double channel_leakoff(const row_loop *l, int cell) {
-    double age = l->f->time - l->f->cells.trigger[cell], spread = l->f->cells.spread[cell];
-    age = age > 0 ? age : 0;
-    return ilsai_tip_cell_full_leakoff_step(l->m->material.C_prime, age, l->t->dt, spread);
+    return ilsai_leakoff_channel(l->m->material.C_prime, l->f->time, l->t->dt,
+                                 l->f->cells.trigger[cell], l->f->cells.spread[cell])
+        .volume;
 }
 
 static void begin_rows(void *context, int first, int end) {

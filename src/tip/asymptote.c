@@ -82,8 +82,9 @@ static inline double gauss_sum(int pairs, const double *node2, const double *wei
                   (middle2 - theta2 * q);
     }
     double sum = 0.0;
-    for (int j = 0; j < pairs / 2; j++)
+    for (int j = 0; j < pairs / 2; j++) {
         sum += term[j] + term[j + pairs / 2];
+    }
     return kappa * sum;
 }
 
@@ -115,12 +116,13 @@ static double bracket_printed(double K, double kappa, double B) {
 static tip_bracket bracket(double K, double kappa, double B) {
     tip_bracket f = {.theta = 1.0 / (1.0 + B), .by_kappa = 0.0, .by_B = 0.0};
     f.omega = B * f.theta;
-    if (K + B >= 2.0 * kappa)
+    if (K + B >= 2.0 * kappa) {
         f.G = gauss_8(kappa, f.theta, f.omega);
-    else if (B < 0.3 && K < 0.2)
+    } else if (B < 0.3 && K < 0.2) {
         f.G = bracket_printed(K, kappa, B);
-    else
+    } else {
         f.G = gauss_16(kappa, f.theta, f.omega);
+    }
     const double pole = f.theta * K + f.omega;
     if (pole > 0.0) {
         /* Euler's relation for F, homogeneous of degree 3 in B and both ends of the integral. */
@@ -174,11 +176,13 @@ static tip_g g_delta(double K, double kappa, double C) {
 /* (3.17) with s = g0 (beta_m^3 + beta_mt^4 C) = (3 + 4 b0 C) F, for p[0] and p[1]. */
 static void delta_p(double K, double C, const double p[2], double delta[2]) {
     delta[0] = delta[1] = 0.0;
-    if (K >= 1.0)
+    if (K >= 1.0) {
         return;
+    }
     const tip_bracket f = bracket(K, 1.0 - K, B0_PER_C * C);
-    for (int k = 0; k < 2; k++)
+    for (int k = 0; k < 2; k++) {
         delta[k] = (1.0 - p[k] + p[k] * (4.0 - f.theta) * f.G) * f.G;
+    }
 }
 
 /*
@@ -198,10 +202,11 @@ static double solve(tip_equation equation, const void *problem, double x, double
             const double corrected = step - 0.5 * curvature / last->slope * step * step;
             return x + x * (corrected + 0.5 * corrected * corrected);
         }
-        if (last->value > 0.0)
+        if (last->value > 0.0) {
             high = x;
-        else
+        } else {
             low = x;
+        }
         x *= exp(fmin(step, STEP_MOST));
         before = step;
         slope_before = last->slope;
@@ -323,18 +328,21 @@ static int larger_exponent(int e, wide a, int power) {
 static double width_beyond(const ilsa_material_def *law, double V, double s) {
     const wide E = widen(law->E_prime), s_wide = widen(s), root = root_of(s_wide);
     const wide w_k = times(over(widen(law->K_prime), E), root);
-    if (V <= 0.0 || law->mu_prime == 0.0)
+    if (V <= 0.0 || law->mu_prime == 0.0) {
         return narrow(w_k, 0);
+    }
     const wide V_wide = widen(V);
     const wide a = over(times(shifted(law->C_prime, 1), root), root_of(V_wide));
     const wide m3 = times(times(times(over(widen(law->mu_prime), E), V_wide), s_wide), s_wide);
-    if (!(m3.m > 0.0))
+    if (!(m3.m > 0.0)) {
         return narrow(w_k, 0);
+    }
     int unit = larger_exponent(m3.e / 3, w_k, 1);
     unit = larger_exponent(unit, times(m3, a), 4);
     const int excess = excess_of(a, unit), unit3 = 3 * unit - excess;
-    if (m3.e - unit3 < -BITS_MOST)
+    if (m3.e - unit3 < -BITS_MOST) {
         return narrow(w_k, 0);
+    }
     const width_problem p = {narrow(w_k, unit), narrow(a, unit + excess), narrow(m3, unit3)};
     return ldexp(width_solve(&p), unit);
 }
@@ -346,10 +354,12 @@ static width_problem plain_problem(const ilsa_material_def *law, double V, doubl
 }
 
 double ilsai_asymptote_width(const ilsa_material_def *law, double V, double s) {
-    if (!is_plain_law(law) || !is_plain(s) || !(is_plain(V) || V == 0.0))
+    if (!is_plain_law(law) || !is_plain(s) || !(is_plain(V) || V == 0.0)) {
         return width_beyond(law, V, s);
-    if (V == 0.0 || law->mu_prime == 0.0)
+    }
+    if (V == 0.0 || law->mu_prime == 0.0) {
         return law->K_prime / law->E_prime * sqrt(s);
+    }
     const width_problem p = plain_problem(law, V, s);
     return width_solve(&p);
 }
@@ -382,8 +392,9 @@ void ilsai_asymptote_moments(const ilsa_material_def *law, double V, double s, d
 
 /* From ln(g_delta w^3) = ln(mu' V s^2 / E'), C_hat falling with the root of V. */
 static double velocity_exponent(double K, double C) {
-    if (!(K < 1.0))
+    if (!(K < 1.0)) {
         return 0.0;
+    }
     const tip_g f = g_delta(K, 1.0 - K, C);
     return (1.0 + 0.5 * f.by_C) / (3.0 + f.by_kappa * K / (1.0 - K) - f.by_C);
 }
@@ -399,8 +410,9 @@ static asymptote_point point_at(double K, double C, double s, double w, double *
 
 static bool is_plain_row(const ilsa_material_def *law, double V, int count, const double *s) {
     bool plain = V > 0.0 && is_plain_law(law) && law->mu_prime > 0.0 && is_plain(V);
-    for (int k = 0; k < count; k++)
+    for (int k = 0; k < count; k++) {
         plain = plain && is_plain(s[k]);
+    }
     return plain;
 }
 
@@ -408,8 +420,9 @@ static bool is_plain_row(const ilsa_material_def *law, double V, int count, cons
 static asymptote_point point_alone(const ilsa_material_def *law, double V, double s, double *next) {
     const double w = ilsai_asymptote_width(law, V, s);
     *next = 1.0;
-    if (!(V > 0.0 && law->mu_prime > 0.0))
+    if (!(V > 0.0 && law->mu_prime > 0.0)) {
         return (asymptote_point){w, 2.0 / 3.0 * w * s, 0.5, 0.0};
+    }
     double K, C;
     scaled_variables(law, V, s, w, &K, &C);
     asymptote_point point = point_at(K, C, s, w, next);
@@ -548,8 +561,9 @@ static asymptote_front distance_of_toughness(const ilsa_material_def *law, doubl
         const wide root = over(times(widen(law->E_prime), widen(w)), widen(law->K_prime));
         s = narrow(times(root, root), 0);
     }
-    if (!(s > s0))
+    if (!(s > s0)) {
         return (asymptote_front){s0, 0.0, 0.0};
+    }
     return (asymptote_front){s, (s - s0) / dt, limited(over(shifted(s, 1), widen(w)))};
 }
 
@@ -567,23 +581,28 @@ asymptote_front ilsai_asymptote_distance(const ilsa_material_def *law, double w,
 asymptote_front ilsai_asymptote_distance_near(const ilsa_material_def *law, double w, double s0,
                                               double dt, double near) {
     distance_problem p;
-    if (law->mu_prime == 0.0)
+    if (law->mu_prime == 0.0) {
         return distance_of_toughness(law, w, s0, dt);
+    }
     const bool plain = is_plain_law(law) && is_plain(w) && is_plain(s0) && is_plain(dt);
-    if (!(plain ? distance_plain(&p, law, w, s0, dt) : distance_beyond(&p, law, w, s0, dt)))
+    if (!(plain ? distance_plain(&p, law, w, s0, dt) : distance_beyond(&p, law, w, s0, dt))) {
         return (asymptote_front){s0, 0.0, 0.0};
+    }
     p.gap = (1.0 - p.K0) * (1.0 + p.K0);
     p.xi_rate = p.K0 * p.K0 / p.gap;
     tip_residual last = {0};
     const double x =
         solve(distance_residual, &p, distance_guess(&p, (near - s0) / s0), LAST_STEP, &last);
-    if (x <= X_LEAST) /* beyond the double range, both ways */
+    if (x <= X_LEAST) { /* beyond the double range, both ways */
         return (asymptote_front){s0, 0.0, 0.0};
-    if (x >= X_MOST && p.xi_rate < 1e-200)
+    }
+    if (x >= X_MOST && p.xi_rate < 1e-200) {
         return (asymptote_front){HUGE_VAL, HUGE_VAL, 0.0};
+    }
     const double per_xi = 1.0 / x + p.xi_rate, v = s0 / per_xi;
-    if (plain)
+    if (plain) {
         return (asymptote_front){s0 + v, v / dt, last.v_by_w * v / w};
+    }
     const wide far = over(widen(s0), widen(per_xi)); /* v, which may be too small */
     return (asymptote_front){s0 + v, narrow(over(far, widen(dt)), 0),
                              limited(times(widen(last.v_by_w), over(far, widen(w))))};
@@ -609,41 +628,49 @@ static bool is_width(const ilsa_material_def *law, double V, double w) {
 }
 
 double ilsa_tip_g_delta(double K_hat, double C_hat) {
-    if (!is_not_negative(K_hat) || !is_not_negative(C_hat))
+    if (!is_not_negative(K_hat) || !is_not_negative(C_hat)) {
         return NAN;
+    }
     return K_hat < 1.0 ? g_delta(K_hat, 1.0 - K_hat, C_hat).g : 0.0;
 }
 
 double ilsa_tip_delta_p(double K_hat, double C_hat, double p) {
-    if (!is_not_negative(K_hat) || !is_not_negative(C_hat) || !(p >= 0.0 && p <= 1.0))
+    if (!is_not_negative(K_hat) || !is_not_negative(C_hat) || !(p >= 0.0 && p <= 1.0)) {
         return NAN;
+    }
     double delta[2];
     delta_p(K_hat, C_hat, (double[]){p, p}, delta);
     return delta[0];
 }
 
 ilsa_status ilsa_tip_width(const ilsa_material_def *scaled, double V, double s, double *w) {
-    if (!scaled || !w)
+    if (!scaled || !w) {
         return ILSA_ERR_NULL;
-    if (!is_law(scaled) || !is_not_negative(V) || !is_positive(s))
+    }
+    if (!is_law(scaled) || !is_not_negative(V) || !is_positive(s)) {
         return ILSA_ERR_VALUE;
+    }
     const double width = ilsai_asymptote_width(scaled, V, s);
-    if (!is_not_negative(width)) /* beyond the double range */
+    if (!is_not_negative(width)) { /* beyond the double range */
         return ILSA_ERR_VALUE;
+    }
     *w = width;
     return ILSA_OK;
 }
 
 ilsa_status ilsa_tip_moments(const ilsa_material_def *scaled, double V, double s, double w,
                              double *M0, double *M1) {
-    if (!scaled || !M0 || !M1)
+    if (!scaled || !M0 || !M1) {
         return ILSA_ERR_NULL;
-    if (!is_law(scaled) || !is_not_negative(V) || !is_positive(s) || !is_width(scaled, V, w))
+    }
+    if (!is_law(scaled) || !is_not_negative(V) || !is_positive(s) || !is_width(scaled, V, w)) {
         return ILSA_ERR_VALUE;
+    }
     double zeroth, first;
     ilsai_asymptote_moments(scaled, V, s, w, &zeroth, &first);
-    if (!is_not_negative(zeroth) || !is_not_negative(first))
+    if (!is_not_negative(zeroth) || !is_not_negative(first)) {
         return ILSA_ERR_VALUE;
+    }
     *M0 = zeroth;
     *M1 = first;
     return ILSA_OK;
@@ -651,13 +678,16 @@ ilsa_status ilsa_tip_moments(const ilsa_material_def *scaled, double V, double s
 
 ilsa_status ilsa_tip_distance(const ilsa_material_def *scaled, double w, double s0, double dt,
                               double *s, double *V) {
-    if (!scaled || !s || !V)
+    if (!scaled || !s || !V) {
         return ILSA_ERR_NULL;
-    if (!is_law(scaled) || !is_positive(w) || !is_positive(s0) || !is_positive(dt))
+    }
+    if (!is_law(scaled) || !is_positive(w) || !is_positive(s0) || !is_positive(dt)) {
         return ILSA_ERR_VALUE;
+    }
     const asymptote_front front = ilsai_asymptote_distance(scaled, w, s0, dt);
-    if (!is_positive(front.s) || !is_not_negative(front.V))
+    if (!is_positive(front.s) || !is_not_negative(front.V)) {
         return ILSA_ERR_VALUE;
+    }
     *s = front.s;
     *V = front.V;
     return ILSA_OK;
@@ -689,29 +719,34 @@ static void vertex_ratios(const ilsa_material_def *law, double V, double s, doub
 static void shape_functions(const double ratio[VERTICES], double N[VERTICES]) {
     int top = VERTEX_K;
     for (int i = 0; i < VERTICES; i++) {
-        if (ratio[i] > ratio[top])
+        if (ratio[i] > ratio[top]) {
             top = i;
+        }
     }
     double sum = 0.0;
     for (int i = 0; i < VERTICES; i++) {
         const int j = (i + 1) % VERTICES, k = (i + 2) % VERTICES;
         N[i] = exp(ratio[i] - ratio[top]);
-        if (ratio[top] < 0.0)
+        if (ratio[top] < 0.0) {
             N[i] *= expm1(ratio[j]) * expm1(ratio[k]);
-        else if (i != top)
+        } else if (i != top) {
             N[i] = 0.0;
+        }
         sum += N[i];
     }
-    for (int i = 0; i < VERTICES; i++)
+    for (int i = 0; i < VERTICES; i++) {
         N[i] /= sum;
+    }
 }
 
 ilsa_status ilsa_tip_triangle(const ilsa_material_def *scaled, double V, double s, double w,
                               ilsa_tip_regime *regime) {
-    if (!scaled || !regime)
+    if (!scaled || !regime) {
         return ILSA_ERR_NULL;
-    if (!is_law(scaled) || !is_not_negative(V) || !is_positive(s) || !is_width(scaled, V, w))
+    }
+    if (!is_law(scaled) || !is_not_negative(V) || !is_positive(s) || !is_width(scaled, V, w)) {
         return ILSA_ERR_VALUE;
+    }
     double N[VERTICES] = {[VERTEX_K] = 1.0};
     if (V > 0.0) {
         double ratio[VERTICES];

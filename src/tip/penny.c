@@ -22,6 +22,7 @@
 #include "tip/asymptote.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 #define PI 3.14159265358979323846
@@ -298,7 +299,7 @@ static void substitute(radial_march *march, double tip_width, double log_ratio[N
  * The widths for the present radius and velocity. The substitution has its spectrum in [-3, 0]
  * (f goes as 1 / w^3 at most): these factors are Chebyshev's for 1 - spectrum in [1, 4].
  */
-static int solve_widths(radial_march *march, double tolerance) {
+static bool solve_widths(radial_march *march, double tolerance) {
     static const double RELAXATION[3] = {0.2631, 0.4, 0.8326};
     int now = march->history.count - 1;
     double radius = exp(march->history.log_radius[now]), time = exp(march->history.log_time[now]);
@@ -313,10 +314,10 @@ static int solve_widths(radial_march *march, double tolerance) {
             march->log_width[i] += RELAXATION[pass % 3] * fmax(-2.0, fmin(2.0, ratio[i]));
         }
         if (worst < tolerance) {
-            return 1;
+            return true;
         }
     }
-    return 0;
+    return false;
 }
 
 static double fracture_volume(const radial_march *march) {
@@ -345,8 +346,8 @@ static double log_radius_of_leak_off(const ilsa_material_def *law, double log_ti
  */
 static double first_alpha(const radial_march *march, double efficiency) {
     double log_time = march->history.log_time[0];
-    int tough = log_radius_of_toughness(&march->law, log_time) <
-                log_radius_of_viscosity(&march->law, log_time);
+    bool tough = log_radius_of_toughness(&march->law, log_time) <
+                 log_radius_of_viscosity(&march->law, log_time);
     double power = tough ? 2.5 : 3.0, volume_alpha = tough ? 0.4 : 4.0 / 9.0;
     double lost = 1.0 - efficiency;
     return (efficiency * power * volume_alpha + 0.5 * lost) / (efficiency * power + 2.0 * lost);
@@ -389,14 +390,14 @@ static void set_radius(radial_march *march, double log_radius) {
  * Volume balance: secant steps on the logarithm of the radius, with slopes that physics allows and
  * only from differences that stand out of what is left in the widths. The growth rates lag behind.
  */
-static int solve_radius(radial_march *march, double log_radius) {
+static bool solve_radius(radial_march *march, double log_radius) {
     double slope = 2.5, previous = 0.0, previous_x = 0.0, tolerance = 1e-3, noise = 0.0;
     int now = march->history.count - 1;
     for (int pass = 0; pass < 60; pass++) {
         set_radius(march, log_radius);
         leak_off(march);
         if (!solve_widths(march, tolerance)) {
-            return 0;
+            return false;
         }
         double change = update_growth(march);
         double excess = log(fracture_volume(march) + march->leaked) - march->history.log_time[now];
@@ -404,7 +405,7 @@ static int solve_radius(radial_march *march, double log_radius) {
             slope = fmax(1.5, fmin(5.0, (excess - previous) / (log_radius - previous_x)));
         }
         if (fabs(excess) < 1e-10 && change < 1e-8 && tolerance < 1e-9) {
-            return 1;
+            return true;
         }
         noise = 10.0 * tolerance;
         tolerance = fmax(1e-10, fmin(tolerance, 0.01 * fmax(fabs(excess), change)));
@@ -412,10 +413,10 @@ static int solve_radius(radial_march *march, double log_radius) {
         previous_x = log_radius;
         log_radius -= fmax(-1.0, fmin(1.0, excess / slope));
     }
-    return 0;
+    return false;
 }
 
-static int start_march(radial_march *march, double log_time) {
+static bool start_march(radial_march *march, double log_time) {
     double x = fmin(log_radius_of_viscosity(&march->law, log_time),
                     fmin(log_radius_of_toughness(&march->law, log_time),
                          log_radius_of_leak_off(&march->law, log_time)));
@@ -431,7 +432,7 @@ static int start_march(radial_march *march, double log_time) {
     return solve_radius(march, x);
 }
 
-static int step_march(radial_march *march) {
+static bool step_march(radial_march *march) {
     int now = march->history.count++;
     for (int i = 0; i < NODES; i++) {
         march->outside[1][i] = march->outside[0][i];
@@ -479,11 +480,11 @@ static double profile_volume(const penny_solution *solution) {
     return 2.0 * PI * solution->R * solution->R * sum;
 }
 
-static int is_positive(double x) {
+static bool is_positive(double x) {
     return isfinite(x) && x > 0.0;
 }
 
-static int is_valid(const ilsa_material_def *scaled, double Q, double size) {
+static bool is_valid(const ilsa_material_def *scaled, double Q, double size) {
     return is_positive(scaled->E_prime) && is_positive(scaled->mu_prime) &&
            isfinite(scaled->K_prime) && scaled->K_prime >= 0.0 && isfinite(scaled->C_prime) &&
            scaled->C_prime >= 0.0 && is_positive(Q) && is_positive(size);
@@ -505,7 +506,7 @@ static ilsa_status solve_at_time(const radial_grid *grid, penny_solution *soluti
     if (!is_valid(&march.law, solution->Q, length)) {
         return ILSA_ERR_VALUE;
     }
-    int solved = start_march(&march, -LOG_STEP * (ILSAI_PENNY_TIMES - 1));
+    bool solved = start_march(&march, -LOG_STEP * (ILSAI_PENNY_TIMES - 1));
     while (solved && march.history.count < ILSAI_PENNY_TIMES) {
         solved = step_march(&march);
     }

@@ -23,14 +23,18 @@ static tip_cell_chord chord_of(const tip_cell_front *front) {
 double ilsai_tip_cell_area(const tip_cell_front *front) {
     const tip_cell_chord c = chord_of(front);
     const double ell = front->ell, rest = c.H + c.h - ell;
-    if (ell <= 0.0)
+    if (ell <= 0.0) {
         return 0.0;
-    if (rest <= 0.0)
+    }
+    if (rest <= 0.0) {
         return c.H * c.length;
-    if (ell < c.h)
+    }
+    if (ell < c.h) {
         return 0.5 * c.length * ell * (ell / c.h);
-    if (ell < c.H)
+    }
+    if (ell < c.H) {
         return c.length * (ell - 0.5 * c.h);
+    }
     return c.length * (c.H - 0.5 * rest * (rest / c.h));
 }
 
@@ -70,10 +74,12 @@ static void add_strip(wet_nodes *n, double h, double far, double sign) {
 static wet_nodes nodes_of(const tip_cell_front *front) {
     const tip_cell_chord c = chord_of(front);
     wet_nodes n = {0};
-    if (front->ell > 0.0)
+    if (front->ell > 0.0) {
         add_strip(&n, c.h, front->ell, c.length);
-    if (front->ell > c.H)
+    }
+    if (front->ell > c.H) {
         add_strip(&n, c.h, front->ell - c.H, -c.length);
+    }
     return n;
 }
 
@@ -158,14 +164,16 @@ static void history_drop(tip_cell_history *history) {
 
 void ilsai_tip_cell_amend(tip_cell_history *history, double ell, double most) {
     const int last = history->count - 1;
-    if (last > 0)
+    if (last > 0) {
         history->ell[last] = fmax(fmin(ell, most), history->ell[last - 1]);
+    }
 }
 
 void ilsai_tip_cell_record(tip_cell_history *history, double t, double ell) {
     ell = fmax(ell, history->ell[history->count - 1]);
-    if (history->count == TIP_CELL_KNOTS)
+    if (history->count == TIP_CELL_KNOTS) {
         history_drop(history);
+    }
     history->t[history->count] = t;
     history->ell[history->count] = ell;
     history->count++;
@@ -177,8 +185,9 @@ void ilsai_tip_cell_record(tip_cell_history *history, double t, double ell) {
  */
 static double leakoff_piece(double ds, double p, double q, double a, double b) {
     const double sum = p + q;
-    if (!(ds > 0.0) || !(sum > 0.0))
+    if (!(ds > 0.0) || !(sum > 0.0)) {
         return 0.0;
+    }
     const double p2 = p * p, q2 = q * q;
     const double at_a = p * (3.0 * p2 + 6.0 * p * q + 4.0 * q2) + 2.0 * q2 * q;
     const double at_b = 2.0 * p2 * p + q * (4.0 * p2 + 6.0 * p * q + 3.0 * q2);
@@ -187,8 +196,9 @@ static double leakoff_piece(double ds, double p, double q, double a, double b) {
 
 /* Length of the chord at s on its rise (part 0), its middle (1) or its fall (2). */
 static double chord_at(const tip_cell_chord *chord, int part, double s) {
-    if (part == 1)
+    if (part == 1) {
         return chord->length;
+    }
     return chord->length * ((part == 0 ? s : chord->H + chord->h - s) / chord->h);
 }
 
@@ -197,8 +207,9 @@ static double leakoff_segment(const tip_cell_chord *chord, const double s[2], co
     const double corner[3] = {chord->h, chord->H, chord->H + chord->h};
     double from = s[0], p = sqrt(age[0]), sum = 0.0;
     for (int part = 0; part < 3 && from < s[1]; part++) {
-        if (corner[part] <= from)
+        if (corner[part] <= from) {
             continue;
+        }
         const double to = fmin(corner[part], s[1]), done = (to - s[0]) / (s[1] - s[0]);
         const double q = sqrt(age[0] + done * (age[1] - age[0]));
         sum +=
@@ -238,11 +249,13 @@ double ilsai_tip_cell_leakoff_last(double C_prime, tip_cell_velocity velocity,
                                    const tip_cell_front *front, const tip_cell_history *history) {
     const int n = history->count;
     const double *t = history->t;
-    if (n <= 2)
+    if (n <= 2) {
         return ilsai_tip_cell_leakoff(C_prime, front, history);
-    if (velocity == TIP_CELL_CONSTANT)
+    }
+    if (velocity == TIP_CELL_CONSTANT) {
         return constant_leakoff(C_prime, front, history, t[n - 1]) -
                constant_leakoff(C_prime, front, history, t[n - 2]);
+    }
     return ilsai_tip_cell_leakoff(C_prime, front, history) -
            ilsai_tip_cell_leakoff_path(C_prime, front, n - 1, t, history->ell);
 }
@@ -256,9 +269,10 @@ double ilsai_tip_cell_full_leakoff(double C_prime, double age, double spread) {
 
 /* With u = p + q of above the mean of the root is u / 2 + (2/3) e^2 / u^3. */
 double ilsai_tip_cell_full_leakoff_step(double C_prime, double age, double dt, double spread) {
-    if (!(age > spread))
+    if (!(age > spread)) {
         return ilsai_tip_cell_full_leakoff(C_prime, age + dt, spread) -
                ilsai_tip_cell_full_leakoff(C_prime, age, spread);
+    }
     const double p0 = sqrt(age + spread), p1 = sqrt(age + dt + spread);
     const double q0 = sqrt(age - spread), q1 = sqrt(age + dt - spread);
     const double u0 = p0 + q0, u1 = p1 + q1, e0 = spread / (u0 * u0), e1 = spread / (u1 * u1);

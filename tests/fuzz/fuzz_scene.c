@@ -7,7 +7,7 @@
 #include "scene.h"
 
 /* The reader whole: of ilsa-run only what reads scenes is linked. */
-#include "profile.c" /* NOLINT(bugprone-suspicious-include) */
+#include "profile.h"
 
 #include <math.h>
 #include <stdio.h>
