@@ -1,6 +1,6 @@
 # The tests, and other ways to run them; `check` itself stands in the Makefile.
 
-.PHONY: check-long asan usan tsan same-answer valgrind coverage fuzz mutants
+.PHONY: check-long asan usan tsan same-answer valgrind valgrind-quick coverage fuzz mutants
 T           =
 CANDIDATES := $(or $(SOME_TESTS),$(TESTS) $(FUZZERS) $(if $(ILSA_LONG),$(TESTS_LONG)))
 CHECKED    := $(if $(T),$(foreach t,$(CANDIDATES),$(if $(findstring $(T),$(t)),$(t))),$(CANDIDATES))
@@ -41,15 +41,20 @@ same-answer: $(BIN)/bench_answer ## one answer from gcc and clang, -O0 and -O3, 
 	@sh tests/same_answer.sh $(BIN)/bench_answer \
 	    $(foreach a,$(ANSWERS),build/$(firstword $(subst :, ,$a))/bin/bench_answer)
 
-# The programs that take valgrind a minute or two at most; `make asan` runs all of them.
-VALGRIND_TESTS = anderson polyline coupled elasticity lubrication march gmres grid handles multigrid tip_cell
+# The programs that take valgrind three minutes at most, those of VALGRIND_QUICK a minute or so all
+# together; `make asan` runs the whole suite.
+VALGRIND_QUICK = anderson gmres grid handles lubrication march multigrid polyline
+VALGRIND_TESTS = $(VALGRIND_QUICK) coupled elasticity tip_cell
 VALGRIND = valgrind -q --error-exitcode=9 --leak-check=full \
            --show-leak-kinds=definite,indirect,possible \
            --errors-for-leak-kinds=definite,indirect,possible --suppressions=tests/valgrind.supp
+VALGRIND_CHECK = $(MAKE) --no-print-directory FLAVOUR=valgrind WITHIN='$(VALGRIND)' \
+                 ILSA_VALGRIND=1 check
 
 valgrind: ## the shorter tests under valgrind: no error, no leak
-	@$(MAKE) --no-print-directory FLAVOUR=valgrind WITHIN='$(VALGRIND)' ILSA_VALGRIND=1 \
-	    SOME_TESTS='$(VALGRIND_TESTS:%=test_%)' check
+	@$(VALGRIND_CHECK) SOME_TESTS='$(VALGRIND_TESTS:%=test_%)'
+valgrind-quick: ## a minute of them
+	@$(VALGRIND_CHECK) SOME_TESTS='$(VALGRIND_QUICK:%=test_%)'
 
 # What a fuzzer finds of its own goes to build/fuzz/corpus, a fault to build/fuzz/fuzz_NAME-*.
 FUZZ_SECONDS = 600

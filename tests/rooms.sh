@@ -17,7 +17,7 @@ rooms='base|fields, grid, memory, threads, errors
 model|what the host says
 tip|the asymptote; cells that the front crosses
 elastic|pressure from width
-flow|lubrication, contact
+flow|lubrication, leak-off, contact
 solve|widths and pressures of a step
 front|survey cells, march, tip cells
 step|one step, from trial to acceptance
