@@ -114,7 +114,7 @@ static double step_share(const front_pass *p, const survey_cell *survey) {
 }
 
 /* What stress step k adds to a cell; by_ell with the distance to it, which grows with ell: a front
- * that has just passed a high one answers by that alone. */
+ * that has just passed a high one moves its width by that alone. */
 static tip_cell_growth one_step(const survey_cell *survey, int k, const tip_cell_front *at,
                                 double share) {
     step_depth d = ilsai_survey_step_depth(survey, k);

@@ -34,7 +34,7 @@ typedef struct tip_cell_growth {
 tip_cell_growth ilsai_tip_cell_growth(const ilsa_material_def *law, double V, double K_I,
                                       const tip_cell_front *front);
 
-/* The volume of the width that a jump of height 1 adds at a distance d behind the front. */
+/* The volume of the width that a stress step of height 1 adds at a distance d behind the front. */
 double ilsai_tip_cell_step_volume(double d, const tip_cell_front *front);
 tip_cell_growth ilsai_tip_cell_step_growth(double d, const tip_cell_front *front);
 
