@@ -1,4 +1,4 @@
-/* Wall time in seconds, for the report and the profile only. */
+/* The wall time in seconds. It serves the report and the profile and no result depends on it. */
 #ifndef ILSAI_CLOCK_H
 #define ILSAI_CLOCK_H
 

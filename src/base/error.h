@@ -5,7 +5,7 @@
 #include <ilsa/status.h>
 #include <stdbool.h>
 
-/* Makes a call that answers with a status; on any but ILSA_OK the calling function returns it. */
+/* Makes a call that returns a status. The calling function returns any status but ILSA_OK. */
 #define ILSAI_TRY(call)                                                                            \
     do {                                                                                           \
         const ilsa_status tried_status = (call);                                                   \
@@ -41,7 +41,7 @@ bool ilsai_reading_failed(void);
 ilsa_status ilsai_check_finite(error_text *error, const char *name, double value);
 ilsa_status ilsai_check_positive(error_text *error, const char *name, double value);
 ilsa_status ilsai_check_not_negative(error_text *error, const char *name, double value);
-/* The same with "must be low .. high". */
+/* ILSA_OK or ILSA_ERR_VALUE with the message "name = value: must be low .. high". */
 ilsa_status ilsai_check_range(error_text *error, const char *name, double value, double low,
                               double high);
 

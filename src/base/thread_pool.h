@@ -1,16 +1,16 @@
 /*
- * Threads that share the loops of one solver. Which thread works on which part of a loop is left
- * to chance: a loop may be shared whose turns neither read nor add to what others write.
+ * Threads that share the loops of one solver. Which thread works on which part of a loop is left to
+ * chance. So a loop may be shared if no turn reads, or adds to, what another turn writes.
  */
 #ifndef ILSAI_THREAD_POOL_H
 #define ILSAI_THREAD_POOL_H
 
 typedef struct thread_pool thread_pool;
 
-/* Turns first .. end - 1 of a loop. It may not share a loop itself. */
+/* Runs turns first .. end - 1 of a loop. It may not share a loop itself. */
 typedef void pool_function(void *context, int first, int end);
 
-/* The caller and threads - 1 others, threads >= 2, which are started. NULL on failure. */
+/* Starts threads - 1 threads, which work beside the caller; threads >= 2. NULL on failure. */
 thread_pool *ilsai_thread_pool_create(int threads);
 
 /* Ends the threads and waits for them. *t may be NULL. */

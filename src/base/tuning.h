@@ -1,163 +1,199 @@
-/* Constants of the numerics, with unit and reason, and what each level sets. */
+/*
+ * The constants of the numerics, each with its unit and its reason, and what each level sets. None
+ * of them is physics. A change of most of them changes results within the tolerances.
+ */
 #ifndef ILSAI_TUNING_H
 #define ILSAI_TUNING_H
 
-/* GMRES: vectors kept. A solve takes 3 to 10 iterations as a rule. */
-#define ILSAI_GMRES_RESTART 30
-/* GMRES: iterations after which a step is given up. */
-#define ILSAI_GMRES_ITERATIONS 240
-/* GMRES: relative residual of one Newton system. The front and the cube of the width change by more
- * between two systems than a sharper solution would be worth. */
-#define ILSAI_GMRES_TOLERANCE 3e-2
-/* and while cells are closed: which of them open, and what they leak, are small differences. */
-#define ILSAI_GMRES_CONTACT 1e-4
-/* Newton: error left in the widths after a relative change d is about NEWTON_CURVATURE d^2. */
-#define ILSAI_NEWTON_CURVATURE 2.0
-/* and about NEWTON_RESIDUAL d times the relative residual that GMRES has left. */
-#define ILSAI_NEWTON_RESIDUAL 6.0
-/* Unknowns up to which the dense factorisation is the faster one. */
-#define ILSAI_DENSE_UNKNOWNS 100
-/* Part of a width that one Newton step may take away. */
-#define ILSAI_WIDTH_DROP 0.9
-/* Newton iterations of one coupled solve before the step is given up: those in which no cell closed
- * or opened, and all. */
-#define ILSAI_NEWTON_MAX  25
-#define ILSAI_CONTACT_MAX 60
-/* Newton: from this iteration on cells no longer open and close in turn, see contact.h, */
-#define ILSAI_CONTACT_LATE 20
-/* unless they would leave their bounds by so much of the largest width or net pressure. */
-#define ILSAI_CONTACT_FORCED 1e-2
-/* Contact: width of a closed cell over the largest that the fracture has had. */
-#define ILSAI_CLOSURE 1e-4
-/* Contact: width, over that, under which a Newton step may close a cell. */
-#define ILSAI_NEARLY_CLOSED 10.0
+/* ---- Levels and tolerances ---------------------------------------------------------------- */
 
-/* Front: from this pass on the cells at the front no longer answer within the Newton system, and
- * the distances are accelerated instead: a step that has not converged by then goes to and fro. */
-#define ILSAI_SENSITIVITY_PASSES 16
-/* Front: volume leaking in a step over that in the fracture from which on the front moves with the
- * widths in the first pass too. */
-#define ILSAI_LEAK_FAST 3.0
-/* Front: from this pass on a change of so many cells will do, if the tolerance is tighter: a cell
- * that turns from tip to channel and back leaves no front that meets it. */
-#define ILSAI_SETTLE_PASS 16
-#define ILSAI_SETTLE      5e-3
-/* Front: the most that the front's move takes away from a self term in Newton's matrix, as a part.
- */
-#define ILSAI_SELF_TERM_GIVES 0.1
-/* Front: how sharply the widths of a pass are found, as a part of the front's last change; and,
- * over the front's tolerance, where this is below those of the levels: a cell that may be tip or
- * channel remains what the passes have made of it, which then must not depend on the solver. */
-#define ILSAI_PASS_SHARE 0.3
-#define ILSAI_PASS_SHARP 3e4
-/* Front: step of the differences that tell how a cell at the front answers, in cells. */
-#define ILSAI_DIFFERENCE 1e-5
-/* Front: passes before a step is given up, and the memory of the Anderson acceleration. */
-#define ILSAI_FRONT_PASSES_MAX  40
-#define ILSAI_NESTED_PASSES_MAX 100
-/* Front: from this pass on a cell that has been tip or channel in the pass before stays so unless
- * the front is further than HOLD from filling it, in parts of the full ell: the widths of the two
- * kinds differ by the tip model's error, and the front would go to and fro between them. */
-#define ILSAI_HOLD_PASS      4
-#define ILSAI_HOLD           0.1
-#define ILSAI_ANDERSON_DEPTH 5
-/* Front: largest advance in one step, in cells; a cell entered and left in a step is still right.
- */
-#define ILSAI_ADVANCE_MAX 2.0
-/* Front: a cell counts as wet from this ell on, in cells. */
-#define ILSAI_WET_MIN 1e-4
-/* Volume: largest correction of the widths that the balance may ask for. */
-#define ILSAI_BALANCE_MAX 1e-2
-/* Front: how far beyond it distances are kept, in cell diagonals. */
-#define ILSAI_BAND 2.0
-
-/* Tip cells: net pressure over the largest in the channel above which it is no first guess. */
-#define ILSAI_PRESSURE_WILD 1e3
-
-/* Time: growth of the step after an accepted one, cut after a rejected one. */
-#define ILSAI_DT_GROWTH 1.5
-#define ILSAI_DT_CUT    0.5
-/* Time: longest step where the front stands still, as a part of the time so far. */
-#define ILSAI_DT_RESTING 0.1
-/* Time: a fracture empties when less than this part of what leaks is injected; part of its volume
- * that it may lose in a step. */
-#define ILSAI_EMPTIES 0.5
-#define ILSAI_DT_LOSS 0.1
-/* Time: smallest step relative to the time so far before an advance gives up. */
-#define ILSAI_DT_SMALLEST 1e-12
-
-/* Time: refused steps, while the time grows by this factor, after which an advance gives up: it
- * would take for ever. */
-#define ILSAI_CRAWL_REFUSED 400
-#define ILSAI_CRAWL_TIME    1.1
-
-/* Source: the most that one solver may have. */
-#define ILSAI_SOURCES 1000
-/* Source: closer to a cell edge than this, in cells, it feeds the cells on both sides. */
-#define ILSAI_EDGE_CELLS 1e-9
-/* Shape of the front: how far along it a parabola is fitted, in cells; cosine above which normals
- * belong to the same stretch; largest curvature, per cell. */
-#define ILSAI_GEOMETRY_REACH 3.5
-#define ILSAI_GEOMETRY_ALIKE 0.3
-/* Least number of points of such a fit, and how far to both sides they must go, as a part of it. */
-#define ILSAI_GEOMETRY_POINTS    4
-#define ILSAI_GEOMETRY_SPAN      0.4
-#define ILSAI_GEOMETRY_CURVATURE 0.5
-/* Survey: secant steps to the distance that agrees with the second term, the same where the stress
- * jumps, the change at which they end, in tolerances of the front, and the largest slope that they
- * believe. */
-#define ILSAI_SURVEY_SECANTS 3
-#define ILSAI_SURVEY_GUESSES 20
-#define ILSAI_SURVEY_CLOSE   1e-3
-#define ILSAI_SURVEY_SLOPE   0.7
-/* Survey: how far behind the cell steps of the stress are looked for, in cells. */
-#define ILSAI_STRESS_STEP_REACH 6.0
-/* Survey: how far beyond such a step the front feels half of its depth, in cells. */
-#define ILSAI_STRESS_STEP_SOFT 0.05
-/* Survey: least part of a width that is left for the asymptote once such steps have theirs. */
-#define ILSAI_STRESS_STEP_LEFT 0.02
-/* Front: part of a survey cell's width that a predicted front's stress steps may add, and the
- * halvings that find how far that is. */
-#define ILSAI_STRESS_STEP_PREDICTED  0.3
-#define ILSAI_STRESS_STEP_BISECTIONS 30
-/* Width behind the tip: largest part that the term after the asymptote may have. */
-#define ILSAI_NEXT_TERM_MAX 0.3
-
-/* Start: viscosity that stands for none, as a part of what a penny of one cell would feel. Widths
- * and pressures differ by about that part; from 1e-17 on rounding is felt. */
-#define ILSAI_INVISCID 1e-10
-/* Start: smallest radius of the penny, in cells. */
-#define ILSAI_START_CELLS 2.0
-
-/* Coarsening: new cells that a footprint must have across, and how far behind the survey cells
- * distances are measured anew, in new cell diagonals. */
-#define ILSAI_COARSEN_LEAST 4
-#define ILSAI_COARSEN_REACH 3.0
-
-/* Levels 1 .. 5: advance of the front per step and tolerance of the front, both in cells. */
+/* Levels are 1 .. ILSAI_LEVELS. Each sets the advance of the front in a step and the tolerance of
+ * the front, both in cells. */
 #define ILSAI_LEVELS        5
 #define ILSAI_LEVEL_DEFAULT 3
 #define ILSAI_LEVEL_STEP                                                                           \
     { 0.75, 0.6, 0.5, 0.25, 0.1 }
 #define ILSAI_LEVEL_TOLERANCE                                                                      \
     { 3e-2, 5e-3, 1e-3, 1e-4, 1e-5 }
-/* Threads: the most that one solver may have. */
-#define ILSAI_THREADS 64
-/* Threads: turns of a loop over cells, and over cells at the front, below which a part of it is not
- * worth sharing: a few microseconds. */
-#define ILSAI_SHARE_CELLS 512
-#define ILSAI_SHARE_FRONT 8
-
-/* Smallest part of the tolerance of the front that a step which hardly moves it asks for. */
+/* A step that hardly moves the front asks for a tolerance in proportion to its advance, but for no
+ * smaller part of the level's tolerance than this. */
 #define ILSAI_TOLERANCE_PART 1e-4
-/* Magnitude: the most that a length, a time, a stress, a rate may be, and the least where it may
- * not be zero. Cubes of lengths times what else there is stay in the double range. */
+/* The smallest tolerance of the front, in cells, because a distance is rounded. */
+#define ILSAI_TOLERANCE_LEAST 1e-12
+/* The tolerance of the widths over that of the front: w changes half as much as s in relative
+ * terms, and the rest is a margin. */
+#define ILSAI_WIDTH_TOLERANCE 0.1
+/* A length, a time, a stress or a rate may be no more than the first, and no less than the second
+ * where it may not be zero. Cubes of lengths times all other factors then stay in the range of a
+ * double. */
 #define ILSAI_MAGNITUDE_MOST  1e60
 #define ILSAI_MAGNITUDE_LEAST 1e-60
 
-/* Smallest tolerance of the front, in cells: rounding of a distance. */
-#define ILSAI_TOLERANCE_LEAST 1e-12
-/* Tolerance of the widths relative to that of the front: w changes half as much as s. */
-#define ILSAI_WIDTH_TOLERANCE 0.1
+/* ---- Linear solver ------------------------------------------------------------------------ */
+
+/* GMRES keeps this many vectors before it restarts. A solve takes 3 to 10 iterations as a rule. */
+#define ILSAI_GMRES_RESTART 30
+/* After this many iterations of GMRES a step is given up. */
+#define ILSAI_GMRES_ITERATIONS 240
+/* The relative residual to which GMRES solves a Newton system. The front and the cube of the width
+ * change by more between two systems than a sharper solution would be worth. */
+#define ILSAI_GMRES_TOLERANCE 3e-2
+/* The relative residual while cells are closed. Which of them open, and what they leak, depends on
+ * small differences. */
+#define ILSAI_GMRES_CONTACT 1e-4
+/* Up to this many unknowns the dense factorisation is faster than GMRES. */
+#define ILSAI_DENSE_UNKNOWNS 100
+
+/* ---- Newton's method ---------------------------------------------------------------------- */
+
+/* A Newton step that changes the widths by a relative d leaves an error of about
+ * d (NEWTON_CURVATURE d + NEWTON_RESIDUAL r), where r is the relative residual that GMRES left. */
+#define ILSAI_NEWTON_CURVATURE 2.0
+#define ILSAI_NEWTON_RESIDUAL  6.0
+/* A Newton step may take away this part of a width. */
+#define ILSAI_WIDTH_DROP 0.9
+/* A coupled solve is given up after so many iterations in which no cell closed or opened, or after
+ * so many in all. */
+#define ILSAI_NEWTON_MAX  25
+#define ILSAI_CONTACT_MAX 60
+
+/* ---- Contact ------------------------------------------------------------------------------ */
+
+/* The width of a closed cell, over the largest width that the fracture has had. */
+#define ILSAI_CLOSURE 1e-4
+/* A Newton step may close a cell whose width is less than this many closure widths. */
+#define ILSAI_NEARLY_CLOSED 10.0
+/* From this Newton iteration on cells no longer open and close in turn, see flow/contact.h. */
+#define ILSAI_CONTACT_LATE 20
+/* The solve is given up where cells would then leave their bounds by more than this part of the
+ * largest width or of the largest net pressure. */
+#define ILSAI_CONTACT_FORCED 1e-2
+
+/* ---- Iteration on the front --------------------------------------------------------------- */
+
+/* A step is given up after so many passes. */
+#define ILSAI_FRONT_PASSES_MAX  40
+#define ILSAI_NESTED_PASSES_MAX 100
+/* From this pass on the front no longer follows the widths within the Newton system. The distances
+ * are accelerated instead, because a step that has not converged by then goes to and fro. */
+#define ILSAI_SENSITIVITY_PASSES 16
+/* The number of differences that Anderson's acceleration keeps. */
+#define ILSAI_ANDERSON_DEPTH 5
+/* The front follows the widths in the first pass too, where a step leaks more than this many times
+ * the fluid in the fracture. */
+#define ILSAI_LEAK_FAST 3.0
+/* The front may take away at most this part of a self term in Newton's matrix. */
+#define ILSAI_SELF_TERM_GIVES 0.1
+/* The derivatives of leak-off are differences over this advance of the front, in cells. */
+#define ILSAI_DIFFERENCE 1e-5
+/* The widths of a pass are found to a part of the front's last change, the smaller of PASS_SHARE
+ * and PASS_SHARP times the front's tolerance. The second is the smaller one where the tolerance is
+ * below those of the levels. A cell that may be tip or channel stays what the passes have made of
+ * it, which then must not depend on the linear solver. */
+#define ILSAI_PASS_SHARE 0.3
+#define ILSAI_PASS_SHARP 3e4
+/* From this pass on a change of SETTLE cells is taken for agreement if the tolerance is tighter: a
+ * cell that turns from tip to channel and back leaves no front that meets the tolerance. */
+#define ILSAI_SETTLE_PASS 16
+#define ILSAI_SETTLE      5e-3
+/* From this pass on a tip or channel cell of the pass before keeps its kind unless the front is
+ * further than HOLD from filling it, as a part of the full ell. The widths of the two kinds differ
+ * by the tip model's error, and the front would go to and fro between them. */
+#define ILSAI_HOLD_PASS 4
+#define ILSAI_HOLD      0.1
+/* The largest advance of the front in a step, in cells. Cells that are entered and left within one
+ * step are still right. */
+#define ILSAI_ADVANCE_MAX 2.0
+/* The largest part by which the volume balance may correct the widths. */
+#define ILSAI_BALANCE_MAX 1e-2
+
+/* ---- Tip cells ---------------------------------------------------------------------------- */
+
+/* A cell is wet from this ell on, in cells. */
+#define ILSAI_WET_MIN 1e-4
+/* Distances are kept up to this far beyond the front, in cell diagonals. */
+#define ILSAI_BAND 2.0
+/* The pressure that a tip cell had is no first guess where its net pressure is more than this many
+ * times the largest in the channel. */
+#define ILSAI_PRESSURE_WILD 1e3
+
+/* ---- Survey cells ------------------------------------------------------------------------- */
+
+/* The distance of a survey cell agrees with the term after the asymptote after at most so many
+ * secant steps. SURVEY_GUESSES holds where the stress has steps. */
+#define ILSAI_SURVEY_SECANTS 3
+#define ILSAI_SURVEY_GUESSES 20
+/* These end at a change of this many tolerances of the front, and take no slope larger than this.
+ */
+#define ILSAI_SURVEY_CLOSE 1e-3
+#define ILSAI_SURVEY_SLOPE 0.7
+/* The term after the asymptote may be at most this part of the width. */
+#define ILSAI_NEXT_TERM_MAX 0.3
+/* Stress steps count up to this far behind a survey cell, in cells. */
+#define ILSAI_STRESS_STEP_REACH 6.0
+/* A front this far beyond a stress step, in cells, feels half of its depth. */
+#define ILSAI_STRESS_STEP_SOFT 0.05
+/* At least this part of a width is left for the asymptote when stress steps have taken theirs. */
+#define ILSAI_STRESS_STEP_LEFT 0.02
+/* Stress steps that a predicted front passes may add this part of the survey cell's width. How far
+ * the front may go for that is found by so many halvings. */
+#define ILSAI_STRESS_STEP_PREDICTED  0.3
+#define ILSAI_STRESS_STEP_BISECTIONS 30
+
+/* ---- Shape of the front ------------------------------------------------------------------- */
+
+/* A parabola is fitted to the front within this distance, in cells. */
+#define ILSAI_GEOMETRY_REACH 3.5
+/* Points belong to one stretch of the front where the cosine of their normals is above this. */
+#define ILSAI_GEOMETRY_ALIKE 0.3
+/* A fit needs so many points, which reach this part of the distance to both sides. */
+#define ILSAI_GEOMETRY_POINTS 4
+#define ILSAI_GEOMETRY_SPAN   0.4
+/* The largest curvature, per cell. */
+#define ILSAI_GEOMETRY_CURVATURE 0.5
+
+/* ---- Time --------------------------------------------------------------------------------- */
+
+/* The limit of the step grows by the first after an accepted step. A refused step is cut by the
+ * second. */
+#define ILSAI_DT_GROWTH 1.5
+#define ILSAI_DT_CUT    0.5
+/* The longest step where the front stands still, as a part of the time so far. */
+#define ILSAI_DT_RESTING 0.1
+/* A fracture empties when less than the first part of its leak-off is injected. It may then lose
+ * the second part of its volume in a step. */
+#define ILSAI_EMPTIES 0.5
+#define ILSAI_DT_LOSS 0.1
+/* An advance gives up when the step is less than this part of the time so far. */
+#define ILSAI_DT_SMALLEST 1e-12
+/* An advance gives up after so many refused steps while the time grows by this factor, because it
+ * would take for ever. */
+#define ILSAI_CRAWL_REFUSED 400
+#define ILSAI_CRAWL_TIME    1.1
+
+/* ---- Sources, start, coarsening ----------------------------------------------------------- */
+
+/* The largest number of sources of one solver. */
+#define ILSAI_SOURCES 1000
+/* A source closer to an edge of a cell than this, in cells, feeds the cells on both sides. */
+#define ILSAI_EDGE_CELLS 1e-9
+/* The viscosity that stands for none, over the one that a penny of one cell would feel. Widths and
+ * pressures differ by about that part, and from 1e-17 on rounding is felt. */
+#define ILSAI_INVISCID 1e-10
+/* The smallest radius of the penny at the start, in cells. */
+#define ILSAI_START_CELLS 2.0
+/* A footprint must have this many new cells across to be coarsened. */
+#define ILSAI_COARSEN_LEAST 4
+/* Distances are measured anew this far behind the survey cells, in diagonals of the new cells. */
+#define ILSAI_COARSEN_REACH 3.0
+
+/* ---- Threads ------------------------------------------------------------------------------ */
+
+/* The largest number of threads of one solver. */
+#define ILSAI_THREADS 64
+/* The smallest part of a loop that is worth sharing, in cells and in cells at the front: a few
+ * microseconds of work. */
+#define ILSAI_SHARE_CELLS 512
+#define ILSAI_SHARE_FRONT 8
 
 #endif

@@ -2,20 +2,21 @@
 
 #include <math.h>
 
-/* The width that a cell keeps when closed. */
+/* The width that a cell keeps while it is closed. */
 static double kept_width(const contact *c, int cell) {
-    double old = c->old[cell];
+    double old = c->width_old[cell];
     return old > 0 && old < c->field.closure_width ? old : c->field.closure_width;
 }
 
-/* The most that need not leak: all but what the cell loses by closing. */
+/* The most that can be retained: the full leak-off but for the fluid that the cell loses by
+ * closing. */
 static double retained_limit(const contact *c, int k) {
     int cell = c->cells->cell[k];
-    if (!c->field.leak) {
+    if (!c->field.leakoff) {
         return 0;
     }
-    double full = fmax(c->field.leak[cell] - c->source_change[k], 0);
-    return full - fmin(full, fmax(c->old[cell] - kept_width(c, cell), 0));
+    double full = fmax(c->field.leakoff[cell] - c->source_change[k], 0);
+    return full - fmin(full, fmax(c->width_old[cell] - kept_width(c, cell), 0));
 }
 
 static void set_retained(const contact *c, int k, double value) {
@@ -52,7 +53,7 @@ void ilsai_contact_begin(const contact *c) {
     }
 }
 
-/* What the width would lack goes on as what does not leak. */
+/* Closes or drains cell k. The width that is missing up to the closure width is retained. */
 static void close_cell(const contact *c, int k, double missing) {
     double limit = retained_limit(c, k);
     bool drains = missing < limit || (c->late && c->field.retained);

@@ -6,7 +6,8 @@
 
 typedef struct anderson anderson;
 
-/* depth: earlier iterates kept, 0 (plain iteration) .. 10. NULL on failure. */
+/* depth is the number of earlier iterates kept, 0 .. 10; 0 is the plain iteration. NULL on failure.
+ */
 anderson *ilsai_anderson_create(int depth);
 void ilsai_anderson_destroy(anderson **a);
 
@@ -14,8 +15,8 @@ void ilsai_anderson_destroy(anderson **a);
 ilsa_status ilsai_anderson_begin(anderson *a, int n);
 
 /*
- * x: the iterate that g was evaluated at; on return the next one. When the residual g - x has grown
- * to more than twice the smallest so far the memory is dropped and the next iterate is g.
+ * Replaces x, at which g was evaluated, by the next iterate. When the residual g - x has grown to
+ * more than twice the smallest so far, the earlier iterates are forgotten and the next one is g.
  */
 void ilsai_anderson_next(anderson *a, const double *g, double *x);
 

@@ -79,7 +79,7 @@ static ilsa_status reserve(coupled *c, int count) {
 static contact contact_of(coupled *c, const coupled_problem *problem, bool late) {
     return (contact){.field = problem->contact,
                      .cells = &c->cells,
-                     .old = problem->width_old,
+                     .width_old = problem->width_old,
                      .source_change = c->source_change,
                      .stress = c->stress,
                      .closing_pressure = c->closing_pressure,

@@ -1,4 +1,4 @@
-/* Restarted, right-preconditioned GMRES on operators given as functions. */
+/* Restarted GMRES, preconditioned from the right, on operators that are functions. */
 #ifndef ILSAI_GMRES_H
 #define ILSAI_GMRES_H
 
@@ -10,11 +10,11 @@ typedef void gmres_operator(void *context, const double *x, double *y);
 
 typedef struct gmres gmres;
 
-/* restart: vectors kept, >= 1. Storage grows with ilsai_gmres_reserve. NULL on failure. */
+/* restart is the number of vectors kept, >= 1. NULL on failure. */
 gmres *ilsai_gmres_create(int restart);
 void ilsai_gmres_destroy(gmres **g);
 
-/* Room for n unknowns; keeps what is there when it is enough. ILSA_ERR_MEMORY. */
+/* Makes room for n unknowns. ILSA_ERR_MEMORY. */
 ilsa_status ilsai_gmres_reserve(gmres *g, size_t n);
 
 typedef struct gmres_result {
@@ -24,9 +24,9 @@ typedef struct gmres_result {
 } gmres_result;
 
 /*
- * Solves A x = b from x = 0 until |b - A x| <= tolerance |b| or max_iterations products; A and M
- * (the preconditioner's solve, y = M^-1 x; NULL for none) must not write their first vector.
- * Non-finite numbers end it with converged = false. Allocates nothing.
+ * Solves A x = b from x = 0 until |b - A x| <= tolerance |b| or after max_iterations products. M is
+ * the preconditioner's solve, y = M^-1 x, or NULL. Neither A nor M may write its first vector.
+ * Numbers that are not finite end the solve with converged = false. Allocates nothing.
  */
 gmres_result ilsai_gmres_solve(gmres *g, size_t n, gmres_operator *A, gmres_operator *M,
                                void *context, const double *b, double *x, double tolerance,

@@ -1,11 +1,12 @@
 /*
- * A penny-shaped fracture with its own parameters anywhere in (tau, phi) of section 5.1, for the
- * start of a run: constant rate Q from a point, uniform stress.
+ * A penny-shaped fracture, with which a run starts: constant rate Q from a point, uniform stress,
+ * parameters anywhere in (tau, phi) of Dontsov and Peirce 2017, section 5.1.
  *
- * Measured against the reference solution, phi = 0..1e4 and tau = 1e-6..1e6: R 0.02 %, V 0.3 %,
- * efficiency 0.0002, width 0.1 % up to rho = 0.95 and 0.2 % at 0.999, pressure 0.1 % and, near the
- * tip, 1 % of its value at rho = 0.5. Found for parameters 100 powers of ten either way. A call
- * takes 1 to 4 ms for a time and 5 to 13 ms for a radius, and no allocation.
+ * Its errors against the reference solution for phi = 0 .. 1e4 and tau = 1e-6 .. 1e6 are 0.02 % of
+ * R, 0.3 % of V, 0.0002 of the efficiency, 0.1 % of the width up to rho = 0.95 and 0.2 % at 0.999,
+ * and 0.1 % of the pressure; near the tip that is 1 % of the pressure at rho = 0.5. A solution is
+ * found for parameters 100 powers of ten either way. A call takes 1 to 4 ms for a time and 5 to 13
+ * ms for a radius. It allocates nothing.
  */
 #ifndef ILSAI_PENNY_H
 #define ILSAI_PENNY_H
@@ -17,7 +18,8 @@ enum {
     ILSAI_PENNY_TIMES = 8   /* of the history that is computed, the last is t */
 };
 
-/* The radius through time: ln(t/t_end) is piecewise cubic in ln(R/R_end), a power law at first. */
+/* The radius through time: ln(t / t_end) is piecewise cubic in ln(R / R_end), before the first of
+ * the times a power law. */
 typedef struct penny_history {
     int count;
     double log_radius[ILSAI_PENNY_TIMES];
@@ -34,7 +36,7 @@ typedef struct penny_solution {
     double alpha;      /* d ln R / d ln t */
     double efficiency; /* volume in the fracture / (Q t) */
 
-    /* Private to radial.c. */
+    /* Private to penny.c. */
     double log_width[ILSAI_PENNY_NODES];
     double pressure[ILSAI_PENNY_NODES];       /* from node 1 on */
     double pressure_slope[ILSAI_PENNY_NODES]; /* d p / d ln(rho / (1 - rho)) */
@@ -46,7 +48,7 @@ typedef struct penny_solution {
 ilsa_status ilsai_penny_at_time(const ilsa_material_def *scaled, double Q, double t,
                                 penny_solution *solution);
 
-/* The solution with radius R > 0. As above. */
+/* The solution with radius R > 0. ILSA_ERR_VALUE if it cannot be found. */
 ilsa_status ilsai_penny_at_radius(const ilsa_material_def *scaled, double Q, double R,
                                   penny_solution *solution);
 
