@@ -470,6 +470,8 @@ static void message_of_a_getter_is_told_by_every_handle(void **state) {
     }
     assert_int_equal(ilsa_get_width(full, &width), ILSA_OK);
     check_message(ilsa_last_error(full), "ilsa_start_radial");
+    assert_int_equal(ilsa_suggest_dt(full, NULL), ILSA_ERR_NULL);
+    check_message(ilsa_last_error(full), "dt is NULL");
     assert_int_equal(ilsa_set_rate(full, 7, 1), ILSA_ERR_VALUE);
     check_message(ilsa_last_error(full), "source = 7");
     check_message(ilsa_last_error(empty), "rate");

@@ -1,7 +1,7 @@
 /* The penny that a run begins with, as it lies on the mesh: against its own solution by points. */
 #include "check.h"
 #include "host.h"
-#include "step/state.h"
+#include "step/solver.h"
 #include "tip/penny.h"
 
 #include <math.h>
@@ -14,16 +14,16 @@ typedef struct passing {
 } passing;
 
 static passing passing_of(const ilsa_solver *s, const penny_solution *p, int cell) {
-    const double x0 = s->mesh.dx * (cell % s->mesh.nx - 0.5 * (s->mesh.nx - 1));
-    const double y0 = s->mesh.dy * (cell / s->mesh.nx - 0.5 * (s->mesh.ny - 1));
+    const double x0 = s->model.mesh.dx * (cell % s->model.mesh.nx - 0.5 * (s->model.mesh.nx - 1));
+    const double y0 = s->model.mesh.dy * (cell / s->model.mesh.nx - 0.5 * (s->model.mesh.ny - 1));
     double sum = 0, squares = 0, leaked = 0;
     for (int k = 0; k < POINTS * POINTS; k++) {
-        const double x = x0 + s->mesh.dx * ((k % POINTS + 0.5) / POINTS - 0.5);
-        const double y = y0 + s->mesh.dy * ((k / POINTS + 0.5) / POINTS - 0.5);
+        const double x = x0 + s->model.mesh.dx * ((k % POINTS + 0.5) / POINTS - 0.5);
+        const double y = y0 + s->model.mesh.dy * ((k / POINTS + 0.5) / POINTS - 0.5);
         const double t = ilsai_penny_arrival(p, hypot(x, y) / p->R);
         sum += t;
         squares += t * t;
-        leaked += 2 * s->material.C_prime * sqrt(p->t - t);
+        leaked += 2 * s->model.material.C_prime * sqrt(p->t - t);
     }
     const double mean = sum / (POINTS * POINTS);
     return (passing){sqrt(squares / (POINTS * POINTS) - mean * mean), leaked / (POINTS * POINTS)};
@@ -37,14 +37,15 @@ static void channel_cells_know_how_long_the_front_took(void **unused) {
     scene.options.symmetry = ILSA_SYMMETRY_NONE;
     ilsa_solver *solver = host_started(&scene, 1.5);
     penny_solution p;
-    assert_int_equal(ilsai_penny_at_radius(&solver->material, 1, 1.5, &p), ILSA_OK);
+    assert_int_equal(ilsai_penny_at_radius(&solver->model.material, 1, 1.5, &p), ILSA_OK);
     double spread = NOTHING_YET, leaked = NOTHING_YET;
     for (int cell = 0; cell < scene.mesh.nx * scene.mesh.ny; cell++) {
-        if (host_kind(solver)[cell] < ILSA_CELL_SURVEY || solver->field.level[cell] < -0.7)
+        if (host_kind(solver)[cell] < ILSA_CELL_SURVEY || solver->fracture.cells.level[cell] < -0.7)
             continue; /* nearer to the source the front's velocity changes within a cell */
         const passing exact = passing_of(solver, &p, cell);
-        spread = worst_of(spread, relative(solver->field.spread[cell] / sqrt(3), exact.deviation));
-        leaked = worst_of(leaked, relative(solver->field.leaked[cell], exact.leaked));
+        spread = worst_of(spread,
+                          relative(solver->fracture.cells.spread[cell] / sqrt(3), exact.deviation));
+        leaked = worst_of(leaked, relative(solver->fracture.cells.leaked[cell], exact.leaked));
     }
     print_message("start: spread of the passing %.2f %% off, leaked %.2f %%\n", 100 * spread,
                   100 * leaked);

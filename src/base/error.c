@@ -40,7 +40,7 @@ const char *ilsa_status_text(ilsa_status status) {
     case ILSA_ERR_SNAPSHOT:
         return "the snapshot is foreign, truncated, altered or of another version";
     case ILSA_ERR_NUMERIC:
-        return "a factorisation or transform failed";
+        return "reserved: no call gives this status";
     }
     return "unknown status";
 }

@@ -48,11 +48,9 @@ ilsa_status ilsa_suggest_dt(const ilsa_solver *solver, double *dt) {
     error_text *error = ilsai_thread_error();
     ilsa_status status = ilsai_check_pointer(error, "solver", solver);
     status = status ? status : ilsai_check_pointer(error, "dt", dt);
-    status = status ? status : ilsai_fracture_check(&solver->fracture, error);
-    if (status == ILSA_OK) {
-        *dt = suggestion(solver);
-    }
-    return status;
+    ILSAI_TRY(ilsai_fail_reading(status ? status : ilsai_fracture_check(&solver->fracture, error)));
+    *dt = suggestion(solver);
+    return ILSA_OK;
 }
 
 /* Adds the work of one report to another; time, dt and the like become the later one's. */
