@@ -67,7 +67,7 @@ if [ -f "$scratch/changed" ]; then
     read -r file <"$scratch/changed"
     rm -f "$(object_of "$file")" "$scratch/changed"
 fi
-for part in src include tests bench examples Makefile ilsa.pc.in; do
+for part in src include tests bench examples Makefile mk ilsa.pc.in; do
     rm -rf "${tree:?}/$part"
     cp -Rp "$part" "$tree/"
 done
@@ -76,7 +76,7 @@ cp -Rp src "$scratch/" # what is mutated from, should src/ change in the meantim
 trap restore EXIT
 trap 'exit 130' INT TERM
 
-identity=$(find src include tests bench examples Makefile -type f | LC_ALL=C sort |
+identity=$(find src include tests bench examples Makefile mk -type f | LC_ALL=C sort |
     xargs cat | cksum | tr ' ' -)
 if [ "$(cat "$scratch/passes" 2>/dev/null)" != "$identity" ]; then
     echo "all tests without a mutation"

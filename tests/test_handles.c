@@ -305,7 +305,7 @@ static ilsa_stress *make_layers(int count, const double *y, const double *sigma)
 }
 
 static void fill(const ilsa_stress *stress, const ilsa_mesh_def *def, double *sigma) {
-    assert_int_equal(ilsai_stress_fill(stress, def, sigma), ILSA_OK);
+    assert_int_equal(ilsai_cell_field_fill(&stress->field, "stress", def, sigma), ILSA_OK);
 }
 
 static void stress_create_and_destroy(void **state) {
@@ -327,7 +327,7 @@ static void stress_create_and_destroy(void **state) {
     fill(stress, &mesh_def, sigma);
     for (int n = 0; n < CELLS; n++)
         assert_true(sigma[n] == -3);
-    assert_false(ilsai_stress_varies(stress));
+    assert_false(ilsai_cell_field_varies(&stress->field));
     ilsa_stress_destroy(&stress);
     assert_null(stress);
     ilsa_stress_destroy(&stress);
@@ -340,9 +340,9 @@ static void stress_sets_refuse_bad_input(void **state) {
     ilsa_stress *stress = make_cells(mesh_def);
     ilsa_mesh *mesh = make_mesh(mesh_def);
     double y[] = {-1, 1}, sigma[CELLS] = {1, 2, 3};
-    unsigned char *before = malloc(ilsai_stress_image_size(stress));
-    unsigned char *after = malloc(ilsai_stress_image_size(stress));
-    ilsai_stress_write(stress, before);
+    unsigned char *before = malloc(ilsai_cell_field_flat_size(&stress->field));
+    unsigned char *after = malloc(ilsai_cell_field_flat_size(&stress->field));
+    ilsai_cell_field_write(&stress->field, before);
     check_failed(ilsa_stress_set_uniform(NULL, 1), ILSA_ERR_NULL, "stress is NULL");
     check_failed(ilsa_stress_set_layers(NULL, 2, y, sigma), ILSA_ERR_NULL, "stress is NULL");
     check_failed(ilsa_stress_set_layers(stress, 2, NULL, sigma), ILSA_ERR_NULL, "y is NULL");
@@ -368,8 +368,8 @@ static void stress_sets_refuse_bad_input(void **state) {
         check_failed(ilsa_stress_set_cells(stress, mesh, sigma), ILSA_ERR_VALUE, "sigma[29] = ");
         sigma[CELLS - 1] = 0;
     }
-    ilsai_stress_write(stress, after);
-    assert_memory_equal(before, after, ilsai_stress_image_size(stress));
+    ilsai_cell_field_write(&stress->field, after);
+    assert_memory_equal(before, after, ilsai_cell_field_flat_size(&stress->field));
     free(before);
     free(after);
     ilsa_mesh_destroy(&mesh);
@@ -401,14 +401,14 @@ static void stress_varies(void **state) {
     double y[] = {-1, 1}, even[] = {2, 2, 2}, odd[] = {2, 2, 3}, cells[CELLS] = {0};
     ilsa_mesh *mesh = make_mesh(mesh_def);
     ilsa_stress *stress = make_layers(2, y, even);
-    assert_false(ilsai_stress_varies(stress));
+    assert_false(ilsai_cell_field_varies(&stress->field));
     assert_int_equal(ilsa_stress_set_layers(stress, 2, y, odd), ILSA_OK);
-    assert_true(ilsai_stress_varies(stress));
+    assert_true(ilsai_cell_field_varies(&stress->field));
     assert_int_equal(ilsa_stress_set_cells(stress, mesh, cells), ILSA_OK);
-    assert_false(ilsai_stress_varies(stress));
+    assert_false(ilsai_cell_field_varies(&stress->field));
     cells[CELLS - 1] = 1;
     assert_int_equal(ilsa_stress_set_cells(stress, mesh, cells), ILSA_OK);
-    assert_true(ilsai_stress_varies(stress));
+    assert_true(ilsai_cell_field_varies(&stress->field));
     ilsa_mesh_destroy(&mesh);
     ilsa_stress_destroy(&stress);
 }
@@ -460,7 +460,7 @@ static void cells_belong_to_their_mesh(void **state) {
     ilsa_mesh_def other = mesh_def;
     other.dx = 3;
     sigma[0] = -1;
-    check_failed(ilsai_stress_fill(stress, &other, sigma), ILSA_ERR_MISMATCH,
+    check_failed(ilsai_cell_field_fill(&stress->field, "stress", &other, sigma), ILSA_ERR_MISMATCH,
                  "5 x 6 cells of 2 x 1: the mesh here has 5 x 6 of 3 x 1");
     assert_true(sigma[0] == -1);
     ilsa_stress_destroy(&stress);
@@ -471,13 +471,13 @@ static void copies_are_independent(void **state) {
     double y[] = {0}, layer[] = {4, 8}, sigma[CELLS], again[CELLS];
     ilsa_stress *from[] = {make_stress(3), make_layers(1, y, layer), make_cells(mesh_def)};
     for (size_t k = 0; k < 3; k++) {
-        ilsa_stress *copy;
+        ilsa_stress copy;
         fill(from[k], &mesh_def, sigma);
-        assert_int_equal(ilsai_stress_copy(from[k], &copy), ILSA_OK);
+        assert_int_equal(ilsai_cell_field_copy(&from[k]->field, &copy.field), ILSA_OK);
         ilsa_stress_destroy(&from[k]);
-        fill(copy, &mesh_def, again);
+        fill(&copy, &mesh_def, again);
         assert_memory_equal(sigma, again, sizeof sigma);
-        ilsa_stress_destroy(&copy);
+        ilsai_cell_field_clear(&copy.field);
     }
 }
 
@@ -509,7 +509,7 @@ static void coarse_cells_are_means_of_old_ones(void **state) {
             double old[144], new[144];
             ilsa_stress *stress = make_cells(def);
             fill(stress, &def, old);
-            assert_int_equal(ilsai_stress_coarsen(stress), ILSA_OK);
+            assert_int_equal(ilsai_cell_field_coarsen(&stress->field), ILSA_OK);
             fill(stress, &twice, new);
             double worst = NOTHING_YET;
             for (int j = 0; j < ny; j++)
@@ -535,13 +535,13 @@ static void coarsening_keeps_a_constant_and_symmetry(void **state) {
         for (int k = 0; k < n * n; k++)
             sigma[k] = 1.1;
         assert_int_equal(ilsa_stress_set_cells(stress, mesh, sigma), ILSA_OK);
-        assert_int_equal(ilsai_stress_coarsen(stress), ILSA_OK);
-        assert_false(ilsai_stress_varies(stress));
+        assert_int_equal(ilsai_cell_field_coarsen(&stress->field), ILSA_OK);
+        assert_false(ilsai_cell_field_varies(&stress->field));
         for (int j = 0; j < n; j++)
             for (int i = 0; i < n; i++)
                 sigma[j * n + i] = sin(abs(2 * i - n + 1)) + cos(0.3 * abs(2 * j - n + 1));
         assert_int_equal(ilsa_stress_set_cells(stress, mesh, sigma), ILSA_OK);
-        assert_int_equal(ilsai_stress_coarsen(stress), ILSA_OK);
+        assert_int_equal(ilsai_cell_field_coarsen(&stress->field), ILSA_OK);
         fill(stress, &twice, sigma);
         for (int j = 0; j < n; j++)
             for (int i = 0; i < n; i++) {
@@ -557,7 +557,7 @@ static void coarsening_leaves_other_fields(void **state) {
     (void)state;
     double y[] = {0.5}, layer[] = {4, 8}, sigma[CELLS];
     ilsa_stress *stress = make_layers(1, y, layer);
-    assert_int_equal(ilsai_stress_coarsen(stress), ILSA_OK);
+    assert_int_equal(ilsai_cell_field_coarsen(&stress->field), ILSA_OK);
     fill(stress, &mesh_def, sigma);
     assert_true(sigma[2L * NX] == 4 && sigma[3L * NX] == 6 && sigma[4L * NX] == 8);
     ilsa_stress_destroy(&stress);
@@ -570,21 +570,21 @@ static void images_give_the_field_back(void **state) {
     double y[] = {-1, 2}, layer[] = {4, 8, 6};
     ilsa_stress *from[] = {make_stress(3), make_layers(2, y, layer), make_cells(mesh_def)};
     for (size_t k = 0; k < 3; k++) {
-        size_t size = ilsai_stress_image_size(from[k]);
+        size_t size = ilsai_cell_field_flat_size(&from[k]->field);
         /* One byte off the alignment of a double. */
         unsigned char *image = malloc(size + 1), *again = malloc(size);
-        ilsa_stress *stress;
-        ilsai_stress_write(from[k], image + 1);
-        assert_int_equal(ilsai_stress_read(image + 1, size, &stress), ILSA_OK);
-        assert_int_equal(ilsai_stress_image_size(stress), size);
-        ilsai_stress_write(stress, again);
+        cell_field seen;
+        ilsai_cell_field_write(&from[k]->field, image + 1);
+        assert_int_equal(ilsai_cell_field_read(image + 1, size, &seen), ILSA_OK);
+        assert_int_equal(ilsai_cell_field_flat_size(&seen), size);
+        ilsai_cell_field_write(&seen, again);
         assert_memory_equal(image + 1, again, size);
-        ilsa_stress_destroy(&stress);
+        ilsai_cell_field_clear(&seen);
         for (size_t less = 0; less < size; less++) {
             unsigned char *part = malloc(less + 1); /* of its own, so that a reader is caught */
             memcpy(part, image + 1, less);
-            check_failed(ilsai_stress_read(part, less, &stress), ILSA_ERR_SNAPSHOT, "malformed");
-            assert_null(stress);
+            check_failed(ilsai_cell_field_read(part, less, &seen), ILSA_ERR_SNAPSHOT, "malformed");
+            assert_null(seen.values);
             free(part);
         }
         free(image);
@@ -600,19 +600,18 @@ static void damaged_images_do_no_harm(void **state) {
     ilsa_stress *from[] = {make_stress(3), make_layers(2, y, layer), make_cells(mesh_def)};
     int refused = 0, taken = 0;
     for (size_t k = 0; k < 3; k++) {
-        size_t size = ilsai_stress_image_size(from[k]);
+        size_t size = ilsai_cell_field_flat_size(&from[k]->field);
         unsigned char *image = malloc(size);
-        ilsai_stress_write(from[k], image);
+        ilsai_cell_field_write(&from[k]->field, image);
         for (size_t n = 0; n < 8 * size; n++) {
-            ilsa_stress *stress;
+            cell_field seen;
             image[n / 8] ^= (unsigned char)(1 << n % 8);
-            ilsa_status status = ilsai_stress_read(image, size, &stress);
+            ilsa_status status = ilsai_cell_field_read(image, size, &seen);
             image[n / 8] ^= (unsigned char)(1 << n % 8);
-            assert_true(status == ILSA_OK || (status == ILSA_ERR_SNAPSHOT && !stress));
+            assert_true(status == ILSA_OK || (status == ILSA_ERR_SNAPSHOT && !seen.values));
             status == ILSA_OK ? taken++ : refused++;
-            if (stress)
-                assert_true(ilsai_stress_image_size(stress) <= size);
-            ilsa_stress_destroy(&stress);
+            assert_true(ilsai_cell_field_flat_size(&seen) <= size);
+            ilsai_cell_field_clear(&seen);
         }
         free(image);
         ilsa_stress_destroy(&from[k]);
@@ -627,24 +626,25 @@ static void unsound_images_are_refused(void **state) {
     (void)state;
     double y[] = {-1, 2}, layer[] = {4, 8, 6};
     ilsa_stress *uniform = make_stress(3), *layers = make_layers(2, y, layer);
-    ilsa_stress *cells = make_cells(mesh_def), *stress;
+    ilsa_stress *cells = make_cells(mesh_def);
+    cell_field seen;
     unsigned char image[1024];
     for (size_t n = 0; n < 3; n++) {
-        uniform->sigma = layers->values[3] = cells->values[9] = bad[n];
+        uniform->field.uniform = layers->field.values[3] = cells->field.values[9] = bad[n];
         ilsa_stress *all[] = {uniform, layers, cells};
         for (size_t k = 0; k < 3; k++) {
-            ilsai_stress_write(all[k], image);
-            check_failed(ilsai_stress_read(image, sizeof image, &stress), ILSA_ERR_SNAPSHOT, "");
+            ilsai_cell_field_write(&all[k]->field, image);
+            check_failed(ilsai_cell_field_read(image, sizeof image, &seen), ILSA_ERR_SNAPSHOT, "");
         }
     }
-    layers->values[3] = 1;
-    layers->values[0] = 5;
-    ilsai_stress_write(layers, image);
-    check_failed(ilsai_stress_read(image, sizeof image, &stress), ILSA_ERR_SNAPSHOT, "malformed");
-    layers->values[0] = -5;
-    ilsai_stress_write(layers, image);
-    assert_int_equal(ilsai_stress_read(image, sizeof image, &stress), ILSA_OK);
-    ilsa_stress_destroy(&stress);
+    layers->field.values[3] = 1;
+    layers->field.values[0] = 5;
+    ilsai_cell_field_write(&layers->field, image);
+    check_failed(ilsai_cell_field_read(image, sizeof image, &seen), ILSA_ERR_SNAPSHOT, "malformed");
+    layers->field.values[0] = -5;
+    ilsai_cell_field_write(&layers->field, image);
+    assert_int_equal(ilsai_cell_field_read(image, sizeof image, &seen), ILSA_OK);
+    ilsai_cell_field_clear(&seen);
     ilsa_stress_destroy(&uniform);
     ilsa_stress_destroy(&layers);
     ilsa_stress_destroy(&cells);
@@ -676,24 +676,21 @@ static void stress_survives_no_memory(void **state) {
     ilsa_mesh *mesh = make_mesh(mesh_def);
     ilsa_stress *stress = make_cells(mesh_def);
     unsigned char before[1024], after[1024];
-    ilsai_stress_write(stress, before);
-    for (int most = 0; most < 2; most++) {
-        ilsa_stress *copy = stress, *read = stress;
-        allocations_left = most;
-        ilsa_status a = ilsai_stress_copy(stress, &copy);
-        allocations_left = most;
-        ilsa_status b = ilsai_stress_read(before, sizeof before, &read);
-        allocations_left = -1;
-        assert_true(a == ILSA_ERR_MEMORY && b == ILSA_ERR_MEMORY && !copy && !read);
-    }
+    ilsai_cell_field_write(&stress->field, before);
+    cell_field copy, read;
+    allocations_left = 0;
+    ilsa_status a = ilsai_cell_field_copy(&stress->field, &copy);
+    ilsa_status b = ilsai_cell_field_read(before, sizeof before, &read);
+    allocations_left = -1;
+    assert_true(a == ILSA_ERR_MEMORY && b == ILSA_ERR_MEMORY && !copy.values && !read.values);
     allocations_left = 0;
     ilsa_status c = ilsa_stress_set_layers(stress, 1, y, layer);
     ilsa_status d = ilsa_stress_set_cells(stress, mesh, cells);
-    ilsa_status e = ilsai_stress_coarsen(stress);
+    ilsa_status e = ilsai_cell_field_coarsen(&stress->field);
     allocations_left = -1;
     assert_true(c == ILSA_ERR_MEMORY && d == c && e == c);
-    ilsai_stress_write(stress, after);
-    assert_memory_equal(before, after, ilsai_stress_image_size(stress));
+    ilsai_cell_field_write(&stress->field, after);
+    assert_memory_equal(before, after, ilsai_cell_field_flat_size(&stress->field));
     ilsa_mesh_destroy(&mesh);
     ilsa_stress_destroy(&stress);
 }

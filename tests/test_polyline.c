@@ -171,6 +171,34 @@ static void grown_fronts_agree_with_the_summary(void **unused) {
     ilsa_solver_destroy(&solver);
 }
 
+/* The regime of a point is that of a survey cell than which none is nearer. */
+static void regimes_are_of_the_nearest_survey_cell(void **unused) {
+    (void)unused;
+    host_scene scene = host_three_layers(61, 61); /* the front is faster along the layers */
+    ilsa_solver *solver = host_started(&scene, 15);
+    host_steps(solver, 20);
+    curve c = front_of(solver);
+    const ilsa_survey_point *survey;
+    size_t count;
+    double low = INFINITY, high = -INFINITY;
+    assert_int_equal(ilsa_get_survey(solver, &survey, &count), ILSA_OK);
+    for (size_t k = 0; k < c.count; k++) {
+        const ilsa_front_point *p = &c.points[k];
+        double least = INFINITY;
+        int same = 0;
+        for (size_t n = 0; n < count; n++)
+            least = smaller_of(least, hypot(survey[n].x - p->x, survey[n].y - p->y));
+        for (size_t n = 0; n < count; n++)
+            same += hypot(survey[n].x - p->x, survey[n].y - p->y) < least * (1 + 1e-9) &&
+                    memcmp(&survey[n].regime, &p->regime, sizeof p->regime) == 0;
+        assert_true(same > 0);
+        low = smaller_of(low, p->regime.N_k);
+        high = larger_of(high, p->regime.N_k);
+    }
+    assert_above(high - low, 0.05); /* it matters which */
+    ilsa_solver_destroy(&solver);
+}
+
 /* Reading changes nothing, and reading again gives the same. */
 static void reading_changes_nothing(void **unused) {
     (void)unused;
@@ -406,6 +434,7 @@ int main(void) {
         cmocka_unit_test(circles_are_circles),
         cmocka_unit_test(lines_go_through_the_source),
         cmocka_unit_test(grown_fronts_agree_with_the_summary),
+        cmocka_unit_test(regimes_are_of_the_nearest_survey_cell),
         cmocka_unit_test(reading_changes_nothing),
         cmocka_unit_test(rings_have_two_loops),
         cmocka_unit_test(lines_cross_the_front_at_a_slant),

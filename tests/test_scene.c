@@ -333,8 +333,8 @@ static const bad_scene scenes[] = {
     {"run tip: empty", "tip = full\n", "tip =\n",
      "28: [run] tip = : must be full, toughness-viscosity or toughness"},
     {"run: unknown key", "coarsen = no\n", "refine = no\n",
-     "27: [run] refine = no: unknown key; must be one of t_end, output_times, dt_initial, dt_max, "
-     "level, coarsen, tip, threads, closure_width"},
+     "27: [run] refine = no: unknown key; must be one of t_end, output_times, dt_initial, level, "
+     "tip, coarsen, threads, dt_max, closure_width"},
     {"run threads: none", "threads = 2\n", "threads = 0\n",
      "29: [run] threads = 0: must be a whole number in 1 .. 64"},
     {"run threads: too many", "threads = 2\n", "threads = 65\n",

@@ -8,6 +8,7 @@
 #include "host.h"
 
 #include <pthread.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -51,6 +52,35 @@ static void every_turn_is_run_once(void **state) {
         ilsai_thread_pool_destroy(&threads);
         assert_null(threads);
     }
+}
+
+/* Parts that a loop was handed out in, and turns of the shortest. */
+typedef struct division {
+    atomic_int parts, shortest;
+} division;
+
+static void note_part(void *context, int first, int end) {
+    division *d = context;
+    int shortest = atomic_load(&d->shortest);
+    atomic_fetch_add(&d->parts, 1);
+    while (end - first < shortest &&
+           !atomic_compare_exchange_weak(&d->shortest, &shortest, end - first)) {
+    }
+}
+
+/* A loop is shared as soon as it is long enough for two parts, none shorter than the least. */
+static void loops_are_shared_from_two_parts_on(void **state) {
+    (void)state;
+    thread_pool *threads = ilsai_thread_pool_create(2);
+    assert_non_null(threads);
+    for (int least = 1; least < 100; least += 7)
+        for (int count = 1; count < 4 * least; count++) {
+            division d = {0, MOST};
+            ilsai_thread_pool_run(threads, note_part, &d, count, least);
+            assert_int_equal(atomic_load(&d.parts), count < 2 * least ? 1 : count / least);
+            assert_true(atomic_load(&d.shortest) >= (count < least ? count : least));
+        }
+    ilsai_thread_pool_destroy(&threads);
 }
 
 static void pause_for(long nanoseconds) {
@@ -272,6 +302,7 @@ static void create_survives_no_memory(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_turn_is_run_once),
+        cmocka_unit_test(loops_are_shared_from_two_parts_on),
         cmocka_unit_test(loops_may_come_at_any_time),
         cmocka_unit_test(loops_see_what_came_before),
         cmocka_unit_test(a_team_may_end_at_once),

@@ -18,6 +18,20 @@
         NULL                                                                                       \
     }
 
+/* The options of the library are keys of their sections, after the sections' own. */
+#define OPTION_KIND_WHOLE  KEY_WHOLE
+#define OPTION_KIND_CHOICE KEY_CHOICE
+#define OPTION_KIND_NUMBER KEY_NUMBER
+#define OPTION_ROW(member, kind, least, most, ...)                                                 \
+    {                                                                                              \
+#member, OPTION_KIND_##kind, least, most, OPTION_KIND_##kind == KEY_NUMBER, {              \
+            __VA_ARGS__                                                                            \
+        }                                                                                          \
+    }
+#define OPTION_OF_NONE(...)
+#define ILSA_OPTION(member, kind, least, most, kept, section, ...)                                 \
+    OPTION_OF_##section(OPTION_ROW(member, kind, least, most, __VA_ARGS__))
+
 const section_def sections[SECTION_COUNT] = {
     {"material",
      0,
@@ -32,11 +46,17 @@ const section_def sections[SECTION_COUNT] = {
       {"C_prime", KEY_NUMBER, NOT_NEG}}},
     {"mesh",
      0,
-     {{"nx", KEY_WHOLE, 3, 1000000, 0, {NULL}},
-      {"ny", KEY_WHOLE, 3, 1000000, 0, {NULL}},
-      {"dx", KEY_NUMBER, POSITIVE},
-      {"dy", KEY_NUMBER, POSITIVE},
-      {"symmetry", KEY_CHOICE, 0, 0, 0, {"auto", "none", "x", "y", "xy"}}}},
+     {
+         {"nx", KEY_WHOLE, 3, 1000000, 0, {NULL}},
+         {"ny", KEY_WHOLE, 3, 1000000, 0, {NULL}},
+         {"dx", KEY_NUMBER, POSITIVE},
+         {"dy", KEY_NUMBER, POSITIVE},
+#define OPTION_OF_MESH(...) __VA_ARGS__,
+#define OPTION_OF_RUN(...)
+#include <ilsa/options.def>
+#undef OPTION_OF_MESH
+#undef OPTION_OF_RUN
+     }},
     {"stress",
      0,
      {{"sigma", KEY_LIST, ANY},
@@ -52,15 +72,14 @@ const section_def sections[SECTION_COUNT] = {
     {"initial", 0, {{"radius", KEY_NUMBER, POSITIVE}, {"time", KEY_NUMBER, POSITIVE}}},
     {"run",
      0,
-     {{"t_end", KEY_NUMBER, POSITIVE},
-      {"output_times", KEY_LIST, POSITIVE},
-      {"dt_initial", KEY_NUMBER, POSITIVE},
-      {"dt_max", KEY_NUMBER, POSITIVE},
-      {"level", KEY_WHOLE, 1, 5, 0, {NULL}},
-      {"coarsen", KEY_CHOICE, 0, 0, 0, {"no", "yes"}},
-      {"tip", KEY_CHOICE, 0, 0, 0, {"full", "toughness-viscosity", "toughness"}},
-      {"threads", KEY_WHOLE, 1, 64, 0, {NULL}},
-      {"closure_width", KEY_NUMBER, POSITIVE}}},
+     {
+         {"t_end", KEY_NUMBER, POSITIVE},
+         {"output_times", KEY_LIST, POSITIVE},
+         {"dt_initial", KEY_NUMBER, POSITIVE},
+#define OPTION_OF_MESH(...)
+#define OPTION_OF_RUN(...) __VA_ARGS__,
+#include <ilsa/options.def>
+     }},
 };
 /* clang-format on */
 

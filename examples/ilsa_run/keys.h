@@ -22,7 +22,7 @@ typedef struct key_def {
     const char *words[6];
 } key_def;
 
-enum { KEYS_MAX = 9 };
+enum { KEYS_MAX = 12 };
 
 typedef struct section_def {
     const char *name;
@@ -51,7 +51,19 @@ enum {
     MATERIAL_K_PRIME,
     MATERIAL_C_PRIME
 };
-enum { MESH_NX, MESH_NY, MESH_DX, MESH_DY, MESH_SYMMETRY };
+enum {
+    MESH_NX,
+    MESH_NY,
+    MESH_DX,
+    MESH_DY,
+#define OPTION_OF_MESH(member) MESH_##member,
+#define OPTION_OF_RUN(member)
+#define OPTION_OF_NONE(member)
+#define ILSA_OPTION(member, kind, least, most, kept, section, ...) OPTION_OF_##section(member)
+#include <ilsa/options.def>
+#undef OPTION_OF_MESH
+#undef OPTION_OF_RUN
+};
 enum { STRESS_SIGMA, STRESS_INTERFACES, STRESS_PROFILE, STRESS_ORIGIN_DEPTH };
 enum { INJECTION_RATE, INJECTION_SCHEDULE, INJECTION_X, INJECTION_Y };
 enum { INITIAL_RADIUS, INITIAL_TIME };
@@ -59,12 +71,13 @@ enum {
     RUN_T_END,
     RUN_OUTPUT_TIMES,
     RUN_DT_INITIAL,
-    RUN_DT_MAX,
-    RUN_LEVEL,
-    RUN_COARSEN,
-    RUN_TIP,
-    RUN_THREADS,
-    RUN_CLOSURE_WIDTH
+#define OPTION_OF_MESH(member)
+#define OPTION_OF_RUN(member) RUN_##member,
+#include <ilsa/options.def>
+#undef ILSA_OPTION
+#undef OPTION_OF_MESH
+#undef OPTION_OF_RUN
+#undef OPTION_OF_NONE
 };
 
 extern const section_def sections[SECTION_COUNT];

@@ -91,9 +91,9 @@ static char *default_directory(const char *scene_path) {
 
 static int run(scene *sc, const options *o) {
     if (o->level)
-        sc->level = o->level;
+        sc->options.level = o->level;
     if (o->threads)
-        sc->threads = o->threads;
+        sc->options.threads = o->threads;
     char *directory = o->out ? strdup(o->out) : default_directory(o->scene);
     int exit_status = directory ? run_scene(sc, directory, o->quiet) : EXIT_RUN_FAILED;
     free(directory);

@@ -49,19 +49,12 @@ static ilsa_status make_parts(const scene *sc, parts *p) {
 }
 
 static ilsa_status make_solver(const scene *sc, const parts *p, ilsa_solver **solver) {
-    ilsa_solver_def def = ilsa_solver_def_default();
+    ilsa_solver_def def = sc->options;
     def.mesh = p->mesh;
     def.material = p->material;
     def.stress = p->stress;
     def.sources = p->sources;
     def.source_count = sc->source_count;
-    def.level = sc->level;
-    def.tip = sc->tip;
-    def.symmetry = sc->symmetry;
-    def.coarsen = sc->coarsen;
-    def.threads = sc->threads;
-    def.dt_max = sc->dt_max;
-    def.closure_width = sc->closure_width;
     return ilsa_solver_create(&def, solver);
 }
 
@@ -109,7 +102,7 @@ int model_start(const scene *sc, ilsa_solver **solver) {
     if (!status)
         status = make_solver(sc, &p, solver);
     if (status == ILSA_ERR_MISMATCH)
-        exit_status = refused(sc, SECTION_MESH, MESH_SYMMETRY,
+        exit_status = refused(sc, SECTION_MESH, MESH_symmetry,
                               ": must be one that stress and sources have, or auto", status, NULL);
     else if (status)
         exit_status = refused(sc, SECTION_MESH, MESH_NX, "", status, NULL);

@@ -66,7 +66,7 @@ static void at_edge(const scene *sc, const ilsa_solver *solver, FILE *out) {
                 ": the fracture has come to the edge of the mesh, x %.6g .. %.6g, y %.6g .. %.6g; "
                 "give more cells%s",
                 now.extent_x_min, now.extent_x_max, now.extent_y_min, now.extent_y_max,
-                sc->coarsen ? "" : ", or [run] coarsen = yes");
+                sc->options.coarsen ? "" : ", or [run] coarsen = yes");
 }
 
 void reason_write(const scene *sc, const ilsa_solver *solver, ilsa_status status,
@@ -75,8 +75,8 @@ void reason_write(const scene *sc, const ilsa_solver *solver, ilsa_status status
         reason_outside(sc, solver, out);
     else if (status == ILSA_MESH_EDGE)
         at_edge(sc, solver, out);
-    else if (status == ILSA_ERR_VALUE && sc->coarsen)
-        scene_error(sc, out, SECTION_RUN, RUN_COARSEN,
+    else if (status == ILSA_ERR_VALUE && sc->options.coarsen)
+        scene_error(sc, out, SECTION_RUN, RUN_coarsen,
                     " = yes: %s; give [mesh] more cells, so that it need not be coarsened, or "
                     "smaller ones, so that it can be",
                     ilsa_last_error(solver));

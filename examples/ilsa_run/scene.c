@@ -119,14 +119,11 @@ static void check_mesh(draft *d, const section *s) {
 }
 
 static void take_mesh(scene *sc, const section *s) {
-    static const ilsa_symmetry symmetries[] = {ILSA_SYMMETRY_AUTO, ILSA_SYMMETRY_NONE,
-                                               ILSA_SYMMETRY_X, ILSA_SYMMETRY_Y, ILSA_SYMMETRY_XY};
     sc->mesh = ilsa_mesh_def_default();
     sc->mesh.nx = (int)s->values[MESH_NX].number;
     sc->mesh.ny = (int)s->values[MESH_NY].number;
     sc->mesh.dx = s->values[MESH_DX].number;
     sc->mesh.dy = number_or(s, MESH_DY, sc->mesh.dx);
-    sc->symmetry = symmetries[(int)number_or(s, MESH_SYMMETRY, 0)];
 }
 
 /* The place of the first value of a list that is not above the one before it; 0: there is none. */
@@ -314,21 +311,29 @@ static void check_run(draft *d, const section *s) {
 
 /* A front that only toughness rules needs some. */
 static void check_tip(draft *d, const section *s, const scene *sc) {
-    if (!d->error_count && sc->tip == ILSA_TIP_TOUGHNESS && sc->material.K_prime == 0)
-        draft_range_error(d, s, RUN_TIP, "full or toughness-viscosity where the toughness is 0");
+    if (!d->error_count && sc->options.tip == ILSA_TIP_TOUGHNESS && sc->material.K_prime == 0)
+        draft_range_error(d, s, RUN_tip, "full or toughness-viscosity where the toughness is 0");
+}
+
+/* The options that the library's table has for a scene file; 0 where the file does not say. */
+static void take_options(ilsa_solver_def *options, section *const *s) {
+    *options = (ilsa_solver_def){0};
+#define OPTION_WHOLE(value)  (int)(value)
+#define OPTION_CHOICE(value) (int)(value)
+#define OPTION_NUMBER(value) (value)
+#define OPTION_OF_MESH(member, kind)                                                               \
+    options->member = OPTION_##kind(number_or(s[SECTION_MESH], MESH_##member, 0));
+#define OPTION_OF_RUN(member, kind)                                                                \
+    options->member = OPTION_##kind(number_or(s[SECTION_RUN], RUN_##member, 0));
+#define OPTION_OF_NONE(member, kind)
+#define ILSA_OPTION(member, kind, least, most, kept, section, ...) OPTION_OF_##section(member, kind)
+#include <ilsa/options.def>
+#undef ILSA_OPTION
 }
 
 static void take_run(draft *d, scene *sc, section *s) {
-    static const ilsa_tip_model tips[] = {ILSA_TIP_FULL, ILSA_TIP_TOUGHNESS_VISCOSITY,
-                                          ILSA_TIP_TOUGHNESS};
     sc->t_end = s->values[RUN_T_END].number;
     sc->dt_initial = number_or(s, RUN_DT_INITIAL, 0);
-    sc->dt_max = number_or(s, RUN_DT_MAX, 0);
-    sc->level = (int)number_or(s, RUN_LEVEL, 3);
-    sc->coarsen = (int)number_or(s, RUN_COARSEN, 0);
-    sc->tip = tips[(int)number_or(s, RUN_TIP, 0)];
-    sc->threads = (int)number_or(s, RUN_THREADS, 1);
-    sc->closure_width = number_or(s, RUN_CLOSURE_WIDTH, 0);
     sc->output_times = take_numbers(s, RUN_OUTPUT_TIMES, &sc->output_count);
     if (sc->output_times)
         return;
@@ -368,6 +373,7 @@ static void build(draft *d, scene *sc) {
     if (!d->error_count) {
         take_material(d, sc, s[SECTION_MATERIAL]);
         take_mesh(sc, s[SECTION_MESH]);
+        take_options(&sc->options, s);
         take_stress(d, sc, s[SECTION_STRESS]);
         take_sources(d, sc);
         take_run(d, sc, s[SECTION_RUN]);
@@ -431,7 +437,7 @@ int scene_check_start(const scene *sc, double t_start, FILE *errors) {
         good = 0;
     }
     return good & moves_clock(sc, errors, RUN_DT_INITIAL, sc->dt_initial, t_start) &
-           moves_clock(sc, errors, RUN_DT_MAX, sc->dt_max, sc->t_end);
+           moves_clock(sc, errors, RUN_dt_max, sc->options.dt_max, sc->t_end);
 }
 
 void scene_free(scene *sc) {

@@ -29,19 +29,16 @@ typedef struct scene {
     ilsa_material_def material;
     int laboratory; /* the material was given as E, nu, mu, ...: figures are labelled in SI */
     ilsa_mesh_def mesh;
-    ilsa_symmetry symmetry;
     int interface_count;
     double *interfaces, *sigma; /* sigma: interface_count + 1; NULL until a log is read */
     scene_log log;
     scene_source *sources;
     int source_count;
-    double radius, time;              /* of the initial fracture; one of them is 0 */
-    double t_end, dt_initial, dt_max; /* dt_*: 0: not limited */
-    double closure_width;             /* 0: the library's own */
+    double radius, time;      /* of the initial fracture; one of them is 0 */
+    double t_end, dt_initial; /* dt_initial: 0: not limited */
     double *output_times;
     int output_count;
-    int level, coarsen, threads;
-    ilsa_tip_model tip;
+    ilsa_solver_def options; /* without handles */
     /* For messages: of the headings, and of the keys, 0 where one was not given. */
     int headings[SECTION_COUNT], lines[SECTION_COUNT][KEYS_MAX];
 } scene;

@@ -3,10 +3,10 @@
  *
  * A solver copies the mesh, material, stress and sources that it is created with and owns all that
  * changes afterwards, so those handles may be destroyed or reused at once. Solvers are independent
- * of each other; one solver is used by one thread at a time, and has threads of its own only where
- * its definition asks for them. Units are any consistent set in which cell sizes, material
+ * of each other. One thread at a time may use a solver, which has threads of its own only where its
+ * definition asks for them. The units are any consistent set in which cell sizes, material
  * parameters, stresses, rates and times are at most 1e60, and at least 1e-60 where they may not be
- * zero.
+ * zero: meshes, materials and solvers refuse others when they are made.
  */
 #ifndef ILSA_SOLVER_H
 #define ILSA_SOLVER_H
@@ -23,18 +23,20 @@ extern "C" {
 
 typedef struct ilsa_solver ilsa_solver;
 
-/* A point source, held by the cell that contains it. */
+/*
+ * A point source. It feeds the cell that contains it, or, on a common edge, the cells on both
+ * sides. The rate is of the whole fracture, both wings.
+ */
 typedef struct ilsa_source_def {
-    double x, y; /* on the mesh */
-    double rate; /* volume per time, >= 0; may be changed by ilsa_set_rate */
+    double x, y; /* length, on the mesh */
+    double rate; /* volume per time, 0 .. 1e60; ilsa_set_rate changes it */
 } ilsa_source_def;
 
 /*
- * What the width behind the front follows (section 3): in the inversion of survey cells (4.9) and
- * in the volume of tip cells (4.18). Flow and leak-off are the material's whatever the choice. So
- * is the start from a penny, and so are the regimes: they are where the full asymptote is at a
- * cell's distance and velocity. The full one is for use, the others are there to see
- * what it is worth.
+ * The asymptote that the width behind the front follows (section 3), in the inversion of survey
+ * cells (4.9) and in the volume of tip cells (4.18). The full one is for use; the others show how
+ * much it is worth. Flow, leak-off, the start from a penny and the regimes are the material's with
+ * each of them: a regime is the place of the full asymptote at a cell's distance and velocity.
  */
 typedef enum ilsa_tip_model {
     ILSA_TIP_FULL = 0,                /* toughness, viscosity, leak-off: (3.15) */
@@ -42,9 +44,9 @@ typedef enum ilsa_tip_model {
     ILSA_TIP_TOUGHNESS = 2            /* LEFM, (2.6): K' s^(1/2) / E'; K' > 0, else refused */
 } ilsa_tip_model;
 
-/* Which mirror symmetry of the scene is used to solve a half or a quarter of it. */
+/* The mirror symmetry of the scene that is used to solve a half or a quarter of it. */
 typedef enum ilsa_symmetry {
-    ILSA_SYMMETRY_AUTO = 0, /* whatever the sources, the stress and the state allow */
+    ILSA_SYMMETRY_AUTO = 0, /* as far as the sources, the stress and the fracture allow */
     ILSA_SYMMETRY_NONE = 1,
     ILSA_SYMMETRY_X = 2, /* x -> -x; a scene without it is refused */
     ILSA_SYMMETRY_Y = 3, /* y -> -y */
@@ -76,10 +78,10 @@ typedef enum ilsa_product {
 typedef struct ilsa_solver_def {
     const ilsa_mesh *mesh;          /* required */
     const ilsa_material *material;  /* required */
-    const ilsa_stress *stress;      /* NULL: zero stress */
+    const ilsa_stress *stress;      /* NULL: no stress */
     const ilsa_source_def *sources; /* source_count of them, required */
     int source_count;               /* 1 .. 1000; default 0 */
-    int level;                      /* 1 fast .. 5 accurate; default 3 */
+    int level;                      /* 1 fast .. 5 accurate; default 3, for which 0 stands */
     ilsa_tip_model tip;             /* default ILSA_TIP_FULL */
     ilsa_symmetry symmetry;         /* default ILSA_SYMMETRY_AUTO */
     ilsa_front_loop loop;           /* default ILSA_LOOP_COUPLED */
@@ -87,65 +89,81 @@ typedef struct ilsa_solver_def {
     ilsa_product product;           /* default ILSA_PRODUCT_AUTO */
     int coarsen;                    /* 1: ilsa_advance coarsens the mesh at its edge; default 0 */
     int threads;          /* 1 .. 64 that a step uses, the caller's included; default 0: as 1 */
-    double step_cells;    /* front advance of a suggested step, in cells, 0.01 .. 1; 0: level */
+    double step_cells;    /* front advance of a suggested step, in cells, 0.01 .. 1; 0: by level */
     double tolerance;     /* of the front, in cells, 1e-12 .. 0.1; 0: by level */
     double dt_max;        /* longest suggested step, time, > 0; 0: no limit */
-    double closure_width; /* that a closed cell keeps, length; 0: 1e-4 of the largest ever */
+    double closure_width; /* width that a closed cell keeps, length, > 0; 0: 1e-4 of the largest
+                             that the fracture has had */
 } ilsa_solver_def;
 
-/* A definition with the defaults above; mesh, material and sources must be given. */
+/*
+ * Returns a definition with the defaults above, in which mesh, material, sources and source_count
+ * must be set. Zero stands for the default in every option.
+ */
 ILSA_API ilsa_solver_def ilsa_solver_def_default(void);
 
 /*
  * Makes a solver without a fracture. On success *solver is a new handle owned by the caller, to be
  * destroyed with ilsa_solver_destroy; otherwise *solver is NULL.
  * ILSA_ERR_NULL, ILSA_ERR_VALUE, ILSA_ERR_MEMORY (also where the system gives no more threads),
- * ILSA_ERR_MISMATCH (per-cell stress of another mesh, symmetry asked for that the scene has not,
- * ILSA_TIP_TOUGHNESS for a material that has none, a product that the library was built without).
+ * ILSA_ERR_MISMATCH (stress per cell of another mesh, a symmetry that the scene does not have,
+ * ILSA_TIP_TOUGHNESS for a material without toughness, a product that the library was built
+ * without).
  *
- * Memory that fails gives ILSA_ERR_MEMORY in every call, with two exceptions in the libraries
- * below. FFTW ends the process when it cannot plan: what a plan needs is asked for first, but
+ * A call that gets no memory returns ILSA_ERR_MEMORY, with two exceptions in the libraries below.
+ * FFTW ends the process when it cannot plan: the library asks for the memory of a plan first, but
  * another thread may take it in between. OpenBLAS maps a buffer (128 MB in 0.3.21) in the first
- * larger call of a thread while others are in one; refused, it tries for ever, since 0.3.30 it ends
- * the process. Under a limit of the address space call it once (cblas_dgemm) before the limit is
- * set.
+ * larger call of a thread while others are in one. Where it gets none it tries for ever, and since
+ * 0.3.30 it ends the process. A host that limits its address space should call cblas_dgemm once
+ * before it sets the limit.
  */
 ILSA_API ilsa_status ilsa_solver_create(const ilsa_solver_def *def, ilsa_solver **solver);
 
-/* Destroys *solver and sets it to NULL. NULL and *solver == NULL are allowed. */
+/* Destroys *solver and sets it to NULL. solver == NULL and *solver == NULL are allowed. */
 ILSA_API void ilsa_solver_destroy(ilsa_solver **solver);
 
 /*
- * What went wrong in the last call that failed on this solver, naming the argument and its value;
- * "" when none has. Valid until the next call. NULL gives the message of the last call of this
- * thread that failed with no solver to keep it: a create, a call on a mesh, material or stress, and
- * every call that takes a const solver (it only reads) or NULL for one.
+ * Returns the message of the last call that failed, which names the argument, its value and its
+ * range; "" if none has failed. It is valid until the next call.
+ *
+ * A call that takes a solver which it may change leaves its message with the solver. Every other
+ * call leaves it with the calling thread: a create, a call on a mesh, material or stress, and the
+ * getters, ilsa_suggest_dt and ilsa_snapshot_save, which take a const solver. The answer for a
+ * solver is the thread's message where the last call of this thread that failed took a const
+ * solver, and the solver's own otherwise. The answer for NULL is always the thread's.
  */
 ILSA_API const char *ilsa_last_error(const ilsa_solver *solver);
 
 /*
  * Starts from the penny-shaped fracture of the solver's own material around its first source, at
- * that source's rate (> 0): of the given radius, or at the given time since the start of injection.
- * The clock is set to that solution's time. The radius must be at least 2 cells and the fracture
- * must lie inside the mesh. A fracture that was there before is replaced.
+ * that source's rate, which must be > 0. The fracture has the given radius, or is that of the given
+ * time since the start of injection; the clock is set to its time. The radius must be at least 2
+ * cells and the fracture must lie inside the mesh. A fracture that was there before is replaced.
  * ILSA_ERR_NULL, ILSA_ERR_VALUE, ILSA_ERR_MEMORY, ILSA_MESH_EDGE.
  */
 ILSA_API ilsa_status ilsa_start_radial(ilsa_solver *solver, double radius);
 ILSA_API ilsa_status ilsa_start_radial_at(ilsa_solver *solver, double time);
 
-/* Sets the rate of source 0 .. source_count - 1 from now on, >= 0. ILSA_ERR_NULL, _VALUE. */
+/*
+ * Sets the rate of source 0 .. source_count - 1 from now on, volume per time of the whole fracture,
+ * 0 .. 1e60. ILSA_ERR_NULL, ILSA_ERR_VALUE.
+ */
 ILSA_API ilsa_status ilsa_set_rate(ilsa_solver *solver, int source, double rate);
 
-/* Takes a copy of another stress field from now on. ILSA_ERR_NULL, _VALUE, _MISMATCH, _MEMORY. */
+/*
+ * Takes a copy of another stress field from now on. ILSA_ERR_NULL, ILSA_ERR_VALUE,
+ * ILSA_ERR_MISMATCH, ILSA_ERR_MEMORY.
+ */
 ILSA_API ilsa_status ilsa_set_stress(ilsa_solver *solver, const ilsa_stress *stress);
 
-/* What a step, or an advance of many steps, did. */
+/* The work of a step, or of an advance of many steps, and where it ended. */
 typedef struct ilsa_report {
-    double time;              /* at the end */
+    double time;              /* of the fracture, at the end */
     double dt;                /* of the last accepted step */
     long steps;               /* accepted */
     long rejected;            /* tried and not accepted */
-    long front_iterations;    /* passes of the front loop, rejected steps included, as below */
+    long front_iterations;    /* passes of the front loop; this and the next three count those of
+                                 rejected steps too */
     long newton_iterations;   /* linear systems solved */
     long krylov_iterations;   /* GMRES iterations */
     long elasticity_products; /* products with the elasticity matrix */
@@ -156,88 +174,118 @@ typedef struct ilsa_report {
 } ilsa_report;
 
 /*
- * Takes one step of exactly dt > 0 by backward Euler (4.4). Where the width would fall under the
- * closure width a cell closes: it keeps that width, its faces carry what of the closure stress the
- * fluid does not, it leaks what it had and then nothing, and it opens again when the pressure of
- * the fluid exceeds the closure stress. The front before closed cells rests. Any status other than
- * ILSA_OK leaves the solver bit for bit as it was: ILSA_STEP_REJECTED, ILSA_STEP_TOO_LARGE,
- * ILSA_MESH_EDGE, ILSA_CLOSED, ILSA_ERR_NULL, ILSA_ERR_VALUE, ILSA_ERR_STATE, ILSA_ERR_MEMORY,
- * ILSA_ERR_NUMERIC. report may be NULL; it is written in any case but for NULL solvers.
+ * Takes one step of exactly dt > 0 by backward Euler (4.4). A cell closes where its width would
+ * fall below the closure width. A closed cell keeps that width, and its faces carry the part of the
+ * closure stress that the fluid does not; it leaks the fluid that it had and then nothing; it opens
+ * again when the pressure of the fluid exceeds the closure stress. The front before closed cells
+ * rests. Any status other than ILSA_OK leaves the solver bit for bit as it was. report may be NULL;
+ * it is written whenever the solver is not NULL.
+ * ILSA_STEP_REJECTED, ILSA_STEP_TOO_LARGE, ILSA_MESH_EDGE, ILSA_CLOSED, ILSA_ERR_NULL,
+ * ILSA_ERR_VALUE, ILSA_ERR_STATE, ILSA_ERR_MEMORY.
  */
 ILSA_API ilsa_status ilsa_step(ilsa_solver *solver, double dt, ilsa_report *report);
 
-/* The step that moves the front by step_cells cells, from the last velocities; at most dt_max. */
+/*
+ * Writes the step that the solver would take next: the fastest point of the front moves by
+ * step_cells cells at its velocity in the last step. Four bounds may make it shorter.
+ * - It is at most a tenth of the time so far, which is the step of a front at rest.
+ * - A fracture that empties, because less than half of the fluid that leaks is injected, loses at
+ *   most a tenth of its volume at the rates of the last step. One that is filled again while cells
+ *   are closed gains at most as much as it has.
+ * - After an advance was refused a step it is at most half of that one. The bound grows by 1.5 with
+ *   every step that is accepted, and a new rate, a start or a coarsening lifts it.
+ * - It is at most dt_max of the definition.
+ * ILSA_ERR_NULL, ILSA_ERR_STATE.
+ */
 ILSA_API ilsa_status ilsa_suggest_dt(const ilsa_solver *solver, double *dt);
 
 /*
- * One accepted step of the solver's own choice that does not pass t_limit > time, rejected steps
- * tried again with half the step; coarsens at the mesh edge if the definition says so. The last
- * step before t_limit lands exactly on it. The statuses of ilsa_step, and ILSA_STALLED.
+ * Takes one accepted step of the solver's own choice, which does not pass t_limit > time; the last
+ * one before t_limit lands exactly on it. A rejected step is tried again with half of its length.
+ * The mesh is coarsened at its edge if the definition says so; it stays so if no step is accepted
+ * afterwards, and any other failure leaves the solver as it was.
+ * ILSA_STALLED when steps are refused down to 1e-12 of the time, or 400 of them while the time
+ * grows by a tenth; and the statuses of ilsa_step and ilsa_coarsen.
  */
 ILSA_API ilsa_status ilsa_advance_one(ilsa_solver *solver, double t_limit, ilsa_report *report);
 
 /*
- * As many such steps as it takes to land exactly on t_end > time. On a status other than ILSA_OK
- * the solver stands at the last accepted step. report sums over the steps; it may be NULL.
+ * Takes as many such steps as it needs to land exactly on t_end > time. On a status other than
+ * ILSA_OK the solver stands at the last accepted step. report, which may be NULL, is the sum over
+ * the steps. The statuses of ilsa_advance_one.
  */
 ILSA_API ilsa_status ilsa_advance(ilsa_solver *solver, double t_end, ilsa_report *report);
 
 /*
- * Lets time pass up to t > time in a fracture where nothing happens: every cell is closed and
- * nothing is injected, which a step answers with ILSA_CLOSED. Only the clock moves.
- * ILSA_ERR_NULL, ILSA_ERR_VALUE, ILSA_ERR_STATE where something would happen.
+ * Lets time pass up to t > time in a fracture where nothing happens, because every cell is closed
+ * and nothing is injected; a step would return ILSA_CLOSED there. Only the clock moves.
+ * ILSA_ERR_NULL, ILSA_ERR_VALUE; ILSA_ERR_STATE without a fracture, and where a cell is open or a
+ * source injects.
  */
 ILSA_API ilsa_status ilsa_wait(ilsa_solver *solver, double t);
 
 /*
- * Moves the state to cells twice as large, the same number of cells: volume and leaked volume are
- * conserved to rounding, trigger times and velocity histories carried over (end of section 5.1).
- * ILSA_ERR_NULL, ILSA_ERR_STATE, ILSA_ERR_VALUE (footprint under 4 of the new cells across),
- * ILSA_ERR_MEMORY. All pointers handed out before are invalid afterwards.
+ * Moves the fracture to cells twice as large, and as many (end of section 5.1). Volume and leaked
+ * volume are conserved to rounding, and trigger times and the paths of the front through tip cells
+ * are carried over. The footprint must be 4 of the new cells across. All pointers handed out before
+ * are invalid afterwards.
+ * ILSA_ERR_NULL, ILSA_ERR_STATE, ILSA_ERR_VALUE, ILSA_ERR_MEMORY.
  */
 ILSA_API ilsa_status ilsa_coarsen(ilsa_solver *solver);
 
-/* The mesh that the solver stands on now, changed only by ilsa_coarsen and snapshots. */
+/*
+ * Writes the mesh that the solver stands on now. Coarsening changes it, and so does a snapshot that
+ * was taken on other cells. ILSA_ERR_NULL.
+ */
 ILSA_API ilsa_status ilsa_get_mesh_def(const ilsa_solver *solver, ilsa_mesh_def *def);
 
-/* Time since the start of injection. ILSA_ERR_NULL; ILSA_ERR_STATE without a fracture, as below. */
+/*
+ * Writes the time since the start of injection. ILSA_ERR_NULL; ILSA_ERR_STATE without a fracture,
+ * as in all getters below.
+ */
 ILSA_API ilsa_status ilsa_get_time(const ilsa_solver *solver, double *time);
 
 /*
- * Fields over the mesh, read without a copy: nx * ny values, owned by the solver, valid until the
- * next call that changes it. Width: 0 outside the footprint; in a tip cell the cell's mean.
- * Pressure: of the fluid, total (not net), in closed cells that of what is caught in them; in cells
- * outside the footprint 0.
- * Stress: the far-field stress the solver uses.
+ * Fields over the mesh, read without a copy: nx * ny values, owned by the solver and valid until
+ * the next call that changes it. Row j = 0 is the lowest; y points up.
+ *
+ * The width is 0 outside the footprint, and in a tip cell its mean over the whole cell, so that
+ * widths times the area of a cell add up to the volume. The pressure is the total pressure of the
+ * fluid, not the net one; in a closed cell it is that of the fluid between its faces, and outside
+ * the footprint it is 0. The stress is the far-field stress that the solver uses.
  */
 ILSA_API ilsa_status ilsa_get_width(const ilsa_solver *solver, const double **width);
 ILSA_API ilsa_status ilsa_get_pressure(const ilsa_solver *solver, const double **pressure);
 ILSA_API ilsa_status ilsa_get_stress(const ilsa_solver *solver, const double **stress);
 
 /*
- * When the front passed the centre of each cell; infinite where it has not. *trigger is NULL when
- * the material has no leak-off, which keeps no such times.
+ * The time at which the front passed the centre of each cell, infinite where it has not. *trigger
+ * is NULL when the material has no leak-off: only leak-off needs these times.
  */
 ILSA_API ilsa_status ilsa_get_trigger_time(const ilsa_solver *solver, const double **trigger);
 
-/* What a cell is; the values of ilsa_get_cell_kinds. */
+/*
+ * The kinds of a cell. The front crosses a tip cell; channel cells are full, and a survey cell is a
+ * channel cell with a tip cell or the edge of the footprint beside it.
+ */
 enum { ILSA_CELL_EMPTY = 0, ILSA_CELL_TIP = 1, ILSA_CELL_SURVEY = 2, ILSA_CELL_CHANNEL = 3 };
 
-/* The kind of each of the nx * ny cells; survey cells are channel cells with a tip neighbour. */
+/* The kind of each of the nx * ny cells; read as the fields are. */
 ILSA_API ilsa_status ilsa_get_cell_kinds(const ilsa_solver *solver, const unsigned char **kind);
 
 /* A point of the front. */
 typedef struct ilsa_front_point {
     double x, y;            /* position */
     double V;               /* normal velocity over the last step, >= 0 */
-    ilsa_tip_regime regime; /* of the survey cell nearest */
-    int loop;               /* closed curves are numbered from 0, the longest first */
+    ilsa_tip_regime regime; /* of the nearest survey cell */
+    int loop;               /* number of its closed curve, from 0, the longest first */
 } ilsa_front_point;
 
 /*
- * The front as closed polylines, counter-clockwise around fluid, the first point not repeated:
- * count points, owned by the solver, valid until the next call on it. Computed on demand, the
- * state itself is not changed. ILSA_ERR_NULL, ILSA_ERR_STATE, ILSA_ERR_MEMORY.
+ * The front as closed polylines, counter-clockwise around the fluid, whose first points are not
+ * repeated: count points, owned by the solver and valid until the next call on it. They are
+ * computed on demand, and the fracture is not changed; but the solver is not const, so that a
+ * message is left with it. ILSA_ERR_NULL, ILSA_ERR_STATE, ILSA_ERR_MEMORY.
  */
 ILSA_API ilsa_status ilsa_get_front(ilsa_solver *solver, const ilsa_front_point **points,
                                     size_t *count);
@@ -252,7 +300,7 @@ typedef struct ilsa_survey_point {
     ilsa_tip_regime regime; /* place in the parametric triangle */
 } ilsa_survey_point;
 
-/* The survey cells: as ilsa_get_front. */
+/* The survey cells, read as the front is by ilsa_get_front. */
 ILSA_API ilsa_status ilsa_get_survey(ilsa_solver *solver, const ilsa_survey_point **points,
                                      size_t *count);
 
@@ -267,14 +315,14 @@ typedef struct ilsa_summary {
     double V_max;                                       /* fastest point of the front */
     int cells, tip_cells, survey_cells, arrested_cells; /* survey cells at rest: V = 0 */
     int closed_cells;     /* survey and channel cells whose faces touch */
-    double closure_width; /* the width that such cells keep */
+    double closure_width; /* the width that closed cells keep */
     int unknowns;         /* of the last step: after symmetry */
     ilsa_report total;    /* since the start; seconds, steps and iterations summed */
 } ilsa_summary;
 
 ILSA_API ilsa_status ilsa_get_summary(const ilsa_solver *solver, ilsa_summary *summary);
 
-/* What the scene made the solver model, and what it left out. */
+/* The processes that the scene made the solver model, and the settings that it uses. */
 typedef struct ilsa_model {
     int leak_off, toughness, stress_varies; /* 0 or 1 */
     ilsa_tip_model tip;                     /* as in the definition */

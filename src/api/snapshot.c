@@ -156,11 +156,11 @@ static void pass_path(stream *io, tip_path *path) {
 }
 
 static void write_stress(stream *io, const ilsa_solver *s) {
-    size_t size = ilsai_stress_image_size(s->model.stress);
+    size_t size = ilsai_cell_field_flat_size(&s->model.stress);
     uint64_t length = size;
     pass(io, &length, sizeof length);
     if (io->out && !io->failed && size <= io->size - io->at) {
-        ilsai_stress_write(s->model.stress, io->out + io->at);
+        ilsai_cell_field_write(&s->model.stress, io->out + io->at);
     }
     io->failed |= size > io->size - io->at;
     io->at += io->failed ? 0 : size;
@@ -252,7 +252,7 @@ typedef struct incoming {
 static void release(incoming *from) {
     ilsai_tip_paths_destroy(&from->fracture.paths);
     ilsai_release(from->sources);
-    ilsa_stress_destroy(&from->model.stress);
+    ilsai_cell_field_clear(&from->model.stress);
     ilsai_release(from->model.sigma);
     ilsai_elasticity_destroy(&from->elastic);
 }
@@ -283,7 +283,8 @@ static ilsa_status read_stress(stream *io, incoming *from) {
     if (io->failed || length > io->size - io->at) {
         return ILSA_ERR_SNAPSHOT;
     }
-    ilsa_status status = ilsai_stress_read(io->in + io->at, (size_t)length, &from->model.stress);
+    ilsa_status status =
+        ilsai_cell_field_read(io->in + io->at, (size_t)length, &from->model.stress);
     io->at += (size_t)length;
     return status;
 }
@@ -326,7 +327,7 @@ static ilsa_status read_head(stream *io, const ilsa_solver *s, incoming *from) {
         return ILSA_ERR_MISMATCH;
     }
     from->model = s->model;
-    from->model.stress = NULL;
+    from->model.stress = (cell_field){0};
     from->model.sigma = NULL;
     from->model.mesh = (ilsa_mesh_def){id.nx, id.ny, id.dx, id.dy};
     pass_fracture(io, &from->fracture, &from->pace);

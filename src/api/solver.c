@@ -162,17 +162,15 @@ ilsa_status ilsa_set_stress(ilsa_solver *solver, const ilsa_stress *stress) {
         error_text *error = solver ? &solver->error : ilsai_thread_error();
         return ilsai_check_pointer(error, solver ? "stress" : "solver", NULL);
     }
-    ilsa_stress *fresh, *old = solver->model.stress;
-    ilsa_status status = ilsai_stress_copy(stress, &fresh);
-    if (status == ILSA_OK) {
-        solver->model.stress = fresh;
-        status = ilsai_model_fill_stress(&solver->model);
-        if (status != ILSA_OK) {
-            solver->model.stress = old;
-            old = fresh;
-        }
-        ilsa_stress_destroy(&old);
+    model *m = &solver->model;
+    cell_field old = m->stress;
+    ilsa_status status = ilsai_cell_field_copy(&stress->field, &m->stress);
+    status = status ? status : ilsai_model_fill_stress(m);
+    if (status != ILSA_OK) {
+        ilsai_cell_field_clear(&m->stress);
+        m->stress = old;
+        return ilsai_fail(&solver->error, status, "%s", ilsai_thread_error()->text);
     }
-    return status == ILSA_OK ? ILSA_OK
-                             : ilsai_fail(&solver->error, status, "%s", ilsai_thread_error()->text);
+    ilsai_cell_field_clear(&old);
+    return ILSA_OK;
 }

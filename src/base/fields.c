@@ -86,17 +86,30 @@ void ilsai_fields_copy(fields *to, const fields *from, int nx, const box *b) {
     }
 }
 
+/* Gives the cells before the axis x = 0 in row j the values of their images. */
+static void unfold_row(char *array, size_t size, const grid *g, const box *b, int j) {
+    for (int i = b->x0; i <= b->x1 && i < g->lo_x; i++) {
+        size_t cell = (size_t)ilsai_grid_cell(g, i, j), from = (size_t)ilsai_grid_fold(g, i, j);
+        if (size == sizeof(double)) {
+            ((double *)array)[cell] = ((const double *)array)[from];
+        } else {
+            array[cell] = array[from];
+        }
+    }
+}
+
 void ilsai_fields_unfold(fields *f, const grid *g, const box *b) {
+    size_t columns = ilsai_box_columns(b);
     for (int row = 0; row < FIELD_COUNT; row++) {
         char *array = ilsai_field(f, row);
         size_t size = ilsai_field_rows[row].size;
-        for (int j = b->y0; array && j <= b->y1; j++) {
-            for (int i = b->x0; i <= b->x1; i++) {
-                size_t cell = (size_t)ilsai_grid_cell(g, i, j);
-                size_t from = (size_t)ilsai_grid_fold(g, i, j);
-                if (cell != from) {
-                    memcpy(array + cell * size, array + from * size, size);
-                }
+        for (int j = b->y1; array && j >= b->y0; j--) {
+            if (j >= g->lo_y) {
+                unfold_row(array, size, g, b, j);
+            } else {
+                size_t to = (size_t)ilsai_grid_cell(g, b->x0, j);
+                size_t from = (size_t)ilsai_grid_cell(g, b->x0, g->ny - 1 - j);
+                memcpy(array + to * size, array + from * size, columns * size);
             }
         }
     }

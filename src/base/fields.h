@@ -61,7 +61,8 @@ void ilsai_fields_clear(fields *f, int nx, const box *b);
 /* Copies the cells of a box, in every field that both have. */
 void ilsai_fields_copy(fields *to, const fields *from, int nx, const box *b);
 
-/* Gives the mirror images of the representative cells in a box their values. */
+/* Gives the mirror images of the representative cells in a box, as symmetric as the grid, their
+ * values. */
 void ilsai_fields_unfold(fields *f, const grid *g, const box *b);
 
 /* Whether a cell of this kind is full: a survey cell or one behind them. */

@@ -1,8 +1,9 @@
 #include "front/march.h"
 
+#include "base/error.h"
+#include "base/memory.h"
 #include <ilsa/solver.h>
 #include <math.h>
-#include <stdlib.h>
 
 /* Components of a normal up to which the front runs along the axis: rounding must not decide. */
 #define FRONT_ALONG 1e-9
@@ -23,23 +24,24 @@ struct march {
     int *heap;   /* node numbers, smallest T first */
     front_cell *cells;
     int *node_of; /* per cell of the region: node number or -1 */
-    int node_count, node_capacity;
+    int node_count;
+    size_t node_capacity;
     int heap_count, cell_count;
     size_t region_capacity;
     box region;
 };
 
 march *ilsai_march_create(void) {
-    return calloc(1, sizeof(march));
+    return ilsai_allocate_zeroed(1, sizeof(march));
 }
 
 void ilsai_march_destroy(march **f) {
     if (*f) {
-        free((*f)->nodes);
-        free((*f)->heap);
-        free((*f)->cells);
-        free((*f)->node_of);
-        free(*f);
+        ilsai_release((*f)->nodes);
+        ilsai_release((*f)->heap);
+        ilsai_release((*f)->cells);
+        ilsai_release((*f)->node_of);
+        ilsai_release(*f);
         *f = NULL;
     }
 }
@@ -50,34 +52,15 @@ const front_cell *ilsai_march_cells(const march *f, int *count) {
 }
 
 static ilsa_status reserve_nodes(march *f, int count) {
-    if (count <= f->node_capacity) {
-        return ILSA_OK;
-    }
-    size_t capacity = (size_t)count + (size_t)count / 2 + 64;
-    node *nodes = realloc(f->nodes, capacity * sizeof *nodes);
-    f->nodes = nodes ? nodes : f->nodes;
-    int *heap = realloc(f->heap, capacity * sizeof *heap);
-    f->heap = heap ? heap : f->heap;
-    front_cell *cells = realloc(f->cells, capacity * sizeof *cells);
-    f->cells = cells ? cells : f->cells;
-    if (!nodes || !heap || !cells) {
-        return ILSA_ERR_MEMORY;
-    }
-    f->node_capacity = (int)capacity;
-    return ILSA_OK;
+    const grown_array arrays[] = {ILSAI_GROWN(f->nodes), ILSAI_GROWN(f->heap),
+                                  ILSAI_GROWN(f->cells)};
+    return ilsai_grow((size_t)count, &f->node_capacity, arrays, 3);
 }
 
 static ilsa_status set_region(march *f, const box *region) {
     size_t size = ilsai_box_columns(region) * ilsai_box_rows(region);
-    if (size > f->region_capacity) {
-        size_t capacity = size + size / 2;
-        int *node_of = realloc(f->node_of, capacity * sizeof *node_of);
-        if (!node_of) {
-            return ILSA_ERR_MEMORY;
-        }
-        f->node_of = node_of;
-        f->region_capacity = capacity;
-    }
+    const grown_array arrays[] = {ILSAI_GROWN(f->node_of)};
+    ILSAI_TRY(ilsai_grow(size, &f->region_capacity, arrays, 1));
     for (size_t k = 0; k < size; k++) {
         f->node_of[k] = -1;
     }
@@ -86,7 +69,7 @@ static ilsa_status set_region(march *f, const box *region) {
     return ILSA_OK;
 }
 
-static int *node_slot(const march *f, const grid *g, int cell) {
+static int *node_place(const march *f, const grid *g, int cell) {
     int i = cell % g->nx, j = cell / g->nx;
     const box *r = &f->region;
     if (i < r->x0 || i > r->x1 || j < r->y0 || j > r->y1) {
@@ -151,7 +134,7 @@ static const node *upwind(const march *f, const grid *g, int i, int j, int face_
     const int faces[2] = {face_a, face_b};
     for (int k = 0; k < 2; k++) {
         int cell = ilsai_grid_neighbour(g, i, j, faces[k]);
-        const int *number = cell >= 0 ? node_slot(f, g, cell) : NULL;
+        const int *number = cell >= 0 ? node_place(f, g, cell) : NULL;
         if (number && *number >= 0 && f->nodes[*number].place < 0) {
             const node *candidate = &f->nodes[*number];
             best = !best || candidate->T < best->T ? candidate : best;
@@ -293,7 +276,7 @@ static void update(const march *f, const grid *g, node *n) {
 
 static ilsa_status add_seed(march *f, const grid *g, const survey_cell *survey_cells, int k) {
     const survey_cell *survey = &survey_cells[k];
-    int *number = node_slot(f, g, survey->cell);
+    int *number = node_place(f, g, survey->cell);
     if (!number) {
         return ILSA_OK;
     }
@@ -314,7 +297,7 @@ static ilsa_status add_seed(march *f, const grid *g, const survey_cell *survey_c
 static ilsa_status touch(march *f, const grid *g, const unsigned char *kind, int i, int j,
                          int face) {
     int cell = ilsai_grid_neighbour(g, i, j, face);
-    int *number = cell >= 0 ? node_slot(f, g, cell) : NULL;
+    int *number = cell >= 0 ? node_place(f, g, cell) : NULL;
     if (!number || kind[cell] >= ILSA_CELL_SURVEY) {
         return ILSA_OK;
     }
@@ -378,7 +361,7 @@ ilsa_status ilsai_march_run(march *f, const grid *g, const box *region, const un
         level[survey_cells[k].cell] = -survey_cells[k].s;
     }
     for (int k = 0; k < survey_count && status == ILSA_OK; k++) {
-        const int *number = node_slot(f, g, survey_cells[k].cell);
+        const int *number = node_place(f, g, survey_cells[k].cell);
         status = number ? touch_all(f, g, kind, survey_cells[k].cell) : ILSA_OK;
     }
     while (status == ILSA_OK && f->heap_count > 0) {

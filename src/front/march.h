@@ -1,6 +1,7 @@
 /*
- * The level-set front: distances of the survey cells extended outwards by fast marching (4.10) to
- * (4.12), and what the front is in each cell that it reaches (4.13).
+ * The level-set front: distances of the survey cells are extended outwards by fast marching,
+ * Dontsov and Peirce 2017, (4.10) to (4.12), which also gives the front in each cell that is
+ * reached, (4.13).
  */
 #ifndef ILSAI_MARCH_H
 #define ILSAI_MARCH_H
@@ -33,18 +34,19 @@ march *ilsai_march_create(void);
 void ilsai_march_destroy(march **f);
 
 /*
- * Marches from the survey_cells into the cells of `region` (representative cells) whose kind is not
- * channel or survey, until T exceeds limit. level[] takes the survey_cells' -s and each reached T;
- * the other non-channel cells of the region take infinity. ILSA_ERR_MEMORY.
+ * Marches from the survey cells into the representative cells of a region whose kind is neither
+ * channel nor survey, until T exceeds limit. level takes -s at the survey cells, T at the cells
+ * that the march has reached, and infinity at the other cells of the region outside the channel.
+ * ILSA_ERR_MEMORY.
  */
 ilsa_status ilsai_march_run(march *f, const grid *g, const box *region, const unsigned char *kind,
                             const survey_cell *survey_cells, int survey_count, double limit,
                             double *level);
 
-/* What the last march reached. */
+/* The cells that the last march has reached, in the order of distance. */
 const front_cell *ilsai_march_cells(const march *f, int *count);
 
-/* dx cos a + dy sin a: the ell at which a cell is full. */
+/* The ell at which a cell is full: dx cos a + dy sin a. */
 static inline double ilsai_march_full(const grid *g, double cos_a, double sin_a) {
     return g->dx * cos_a + g->dy * sin_a;
 }

@@ -14,13 +14,13 @@ void ilsai_tip_cells_destroy(tip_cells *t) {
     *t = (tip_cells){0};
 }
 
-/* Injection alone: what the source terms of a cell are before any leak-off of this pass. */
+/* Replaces the leak-off of a cell in this step, in its source term too. */
 static void set_leakoff(const front_pass *p, int cell, double leak) {
     p->trial->source_term[cell] += p->trial->leakoff[cell] - leak;
     p->trial->leakoff[cell] = leak;
 }
 
-/* Cells of the pass before that the march no longer reaches. */
+/* Empties the cells that the pass before has wetted and the march no longer reaches. */
 static ilsa_status drop_unreached(const front_pass *p) {
     box part = ilsai_box_fold(p->g, &p->region);
     for (int j = part.y0; j <= part.y1; j++) {
@@ -41,6 +41,8 @@ static ilsa_status drop_unreached(const front_pass *p) {
     return ILSA_OK;
 }
 
+/* The kind of a cell that the march has reached. Cells that were tip cells when the step began stay
+ * wet. */
 static unsigned char classify(const front_pass *p, const front_cell *c, bool hold) {
     double full = ilsai_march_full(p->g, c->cos_a, c->sin_a);
     unsigned char was = p->trial->kind[c->cell];
@@ -84,7 +86,7 @@ double ilsai_tip_cells_leakoff(const front_pass *p, const front_cell *c,
     return ilsai_leakoff_tip(p->material->C_prime, p->velocity, &at, history).volume;
 }
 
-/* Whether the cells that place the front in c are closed, which brings it no fluid. */
+/* Whether all survey cells that place the front in c are closed, so that no fluid comes to it. */
 static bool is_cut_off(const front_pass *p, const front_cell *c) {
     bool open = false;
     for (int k = 0; k < c->from.count; k++) {
@@ -93,7 +95,8 @@ static bool is_cut_off(const front_pass *p, const front_cell *c) {
     return !open;
 }
 
-/* A tip cell that is cut off leaks no more than it loses in width, and gains none. */
+/* Sets the leak-off of a cell and the path in it. A tip cell that is cut off leaks no more than it
+ * loses in width. */
 static void leak_at_front(const front_pass *p, const front_cell *c, tip_path *path) {
     path->cell = c->cell;
     double leak = ilsai_tip_cells_leakoff(p, c, &path->history);
@@ -114,7 +117,7 @@ static double step_share(const front_pass *p, const survey_cell *survey) {
 }
 
 /* What stress step k adds to a cell; by_ell with the distance to it, which grows with ell: a front
- * that has just passed a high one answers by that alone. */
+ * that has just passed a high one moves its width by that alone. */
 static tip_cell_growth one_step(const survey_cell *survey, int k, const tip_cell_front *at,
                                 double share) {
     step_depth d = ilsai_survey_step_depth(survey, k);
@@ -207,7 +210,7 @@ static void set_cells(void *context, int first, int end) {
     }
 }
 
-/* What the self terms of the survey cells and of cells that have filled in the step lack. */
+/* What the self term of a cell that has filled in the step lacks. */
 self_term ilsai_tip_cells_self_term(const front_pass *p, const front_cell *c) {
     double at = -c->T, V = c->V > 0 ? c->V : 0;
     double w = V > 0 ? ilsai_asymptote_width(p->widths.tip_material, V, at) : 1;

@@ -1,6 +1,6 @@
 /*
  * The tip cells in one pass of a step: after the march, which cells are wet, their widths (4.18)
- * and leak-off (4.25), and how both answer to the widths of the survey cells.
+ * and leak-off (4.25), and how both change with the widths of the survey cells.
  */
 #ifndef ILSAI_TIP_CELLS_H
 #define ILSAI_TIP_CELLS_H

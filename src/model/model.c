@@ -17,14 +17,6 @@ void ilsai_model_set_viscosity(model *m, double mu_prime) {
     m->tip_material = tip_material(&m->material, m->options.tip);
 }
 
-static ilsa_status copy_stress(model *m, const ilsa_stress *stress) {
-    if (stress) {
-        return ilsai_stress_copy(stress, &m->stress);
-    }
-    ilsa_stress_def zero = ilsa_stress_def_default();
-    return ilsa_stress_create(&zero, &m->stress);
-}
-
 ilsa_status ilsai_model_create(model *m, const ilsa_solver_def *def) {
     *m = (model){.options = *def, .mesh = def->mesh->def, .material = def->material->def};
     m->options.mesh = NULL;
@@ -36,14 +28,16 @@ ilsa_status ilsai_model_create(model *m, const ilsa_solver_def *def) {
     ilsai_model_set_viscosity(m, m->material.mu_prime);
     ILSAI_TRY(ilsai_sources_create(&m->sources, def->sources, def->source_count));
     ilsai_sources_place(&m->sources, &m->mesh);
-    ILSAI_TRY(copy_stress(m, def->stress));
+    if (def->stress) {
+        ILSAI_TRY(ilsai_cell_field_copy(&def->stress->field, &m->stress));
+    }
     m->sigma = ilsai_allocate(ilsai_mesh_cells(&m->mesh), sizeof *m->sigma);
     return m->sigma ? ILSA_OK : ILSA_ERR_MEMORY;
 }
 
 void ilsai_model_destroy(model *m) {
     ilsai_sources_destroy(&m->sources);
-    ilsa_stress_destroy(&m->stress);
+    ilsai_cell_field_clear(&m->stress);
     ilsai_release(m->sigma);
     *m = (model){0};
 }
@@ -63,8 +57,8 @@ static bool sigma_mirrors(const model *m, bool about_x) {
 }
 
 ilsa_status ilsai_model_fill_stress(model *m) {
-    ILSAI_TRY(ilsai_stress_fill(m->stress, &m->mesh, m->sigma));
-    m->sigma_is_uniform = !ilsai_stress_varies(m->stress);
+    ILSAI_TRY(ilsai_cell_field_fill(&m->stress, "stress", &m->mesh, m->sigma));
+    m->sigma_is_uniform = !ilsai_cell_field_varies(&m->stress);
     m->sigma_mirror_x = sigma_mirrors(m, true);
     m->sigma_mirror_y = sigma_mirrors(m, false);
     return ILSA_OK;

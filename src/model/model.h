@@ -22,7 +22,7 @@ typedef struct model {
     ilsa_material_def tip_material; /* without the processes that the tip model leaves out */
     bool inviscid;                  /* the material was given without viscosity */
     sources sources;
-    ilsa_stress *stress;
+    cell_field stress;
     double *sigma;                       /* the stress in each cell of the mesh */
     bool sigma_is_uniform;               /* in all cells */
     bool sigma_mirror_x, sigma_mirror_y; /* bit for bit, about x = 0, about y = 0 */

@@ -7,7 +7,7 @@
 #include <stdbool.h>
 
 enum {
-#define ILSA_OPTION(member, kind, least, most, kept, key, words) OPTION_##member,
+#define ILSA_OPTION(member, kind, least, most, kept, section, ...) OPTION_##member,
 #include <ilsa/options.def>
 #undef ILSA_OPTION
     OPTION_COUNT

@@ -37,7 +37,7 @@ typedef struct coarse {
     fields field;
     tip_paths paths;
     box footprint;
-    ilsa_stress *stress;
+    cell_field stress;
     elasticity *elastic;
 } coarse;
 
@@ -345,7 +345,7 @@ static void release(coarse *c) {
     ilsai_fields_destroy(&c->known);
     ilsai_fields_destroy(&c->field);
     ilsai_tip_paths_destroy(&c->paths);
-    ilsa_stress_destroy(&c->stress);
+    ilsai_cell_field_clear(&c->stress);
     ilsai_elasticity_destroy(&c->elastic);
 }
 
@@ -354,8 +354,8 @@ static ilsa_status allocate(coarse *c) {
     bool leaks = ilsai_model_leaks(c->m);
     ILSAI_TRY(ilsai_fields_create(&c->known, cells, FIELD_FRACTURE, leaks));
     ILSAI_TRY(ilsai_fields_create(&c->field, cells, FIELD_FRACTURE, leaks));
-    ILSAI_TRY(ilsai_stress_copy(c->m->stress, &c->stress));
-    ILSAI_TRY(ilsai_stress_coarsen(c->stress));
+    ILSAI_TRY(ilsai_cell_field_copy(&c->m->stress, &c->stress));
+    ILSAI_TRY(ilsai_cell_field_coarsen(&c->stress));
     return ilsai_elasticity_create(c->m->material.E_prime, c->mesh.dx, c->mesh.dy,
                                    c->m->options.product, &c->elastic);
 }

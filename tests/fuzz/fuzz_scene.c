@@ -7,7 +7,7 @@
 #include "scene.h"
 
 /* The reader whole: of ilsa-run only what reads scenes is linked. */
-#include "profile.c" /* NOLINT(bugprone-suspicious-include) */
+#include "profile.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -57,9 +57,10 @@ static void check_scene(const scene *sc) {
     const ilsa_mesh_def *m = &sc->mesh;
     FUZZ_EXPECT(m->nx >= 3 && m->ny >= 3 && m->nx <= (1 << 28) / m->ny);
     FUZZ_EXPECT(m->dx > 0 && m->dy > 0 && m->dx <= 1001 * m->dy && m->dy <= 1001 * m->dx);
-    FUZZ_EXPECT(sc->level >= 1 && sc->level <= 5 && sc->threads >= 1 && sc->threads <= 64);
+    FUZZ_EXPECT(sc->options.level >= 0 && sc->options.level <= 5 && sc->options.threads >= 0 &&
+                sc->options.threads <= 64);
     FUZZ_EXPECT((sc->radius > 0) != (sc->time > 0));
-    FUZZ_EXPECT(sc->t_end > 0 && sc->dt_initial >= 0 && sc->dt_max >= 0);
+    FUZZ_EXPECT(sc->t_end > 0 && sc->dt_initial >= 0 && sc->options.dt_max >= 0);
     FUZZ_EXPECT(sc->source_count >= 1);
     for (int i = 0; i < sc->source_count; i++)
         check_source(sc, &sc->sources[i]);
