@@ -305,8 +305,10 @@ static stiffness make_stiffness(const disc *d, const penny_solution *s, int comp
         fprintf(stderr, "no elasticity\n");
         exit(EXIT_FAILURE);
     }
-    if (completed)
+    if (completed) {
+        ilsai_elasticity_make_self_terms(k.e);
         find_edges(d, s, k.e, k.self_correction);
+    }
     return k;
 }
 
