@@ -184,7 +184,8 @@ static void products_agree_with_direct_sum(void **state) {
         }
         print_message("product, cells %g x %g: off the direct sum by %.2g (FFT), %.2g (BLAS)\n",
                       cell[c][0], cell[c][1], by_fft, by_blas);
-        assert_below(by_fft, 1e-12);
+        if (ilsai_elasticity_has_fft())
+            assert_below(by_fft, 1e-12);
         assert_below(by_blas, 1e-12);
     }
 }
