@@ -129,8 +129,15 @@
 #define ILSAI_SURVEY_SLOPE 0.7
 /* The term after the asymptote may be at most this part of the width. */
 #define ILSAI_NEXT_TERM_MAX 0.3
-/* Stress steps count up to this far behind a survey cell, in cells. */
+/* Steps of the stress are looked for up to so many cells behind a survey cell, and count in full up
+ * to the second number of cells. */
 #define ILSAI_STRESS_STEP_REACH 6.0
+#define ILSAI_STRESS_STEP_FULL  3.0
+/* Distance of a stress step from the front, over the length of the fracture on the normal, up to
+ * which the fracture is a half-plane to the step, and from which on the step is the other front's.
+ */
+#define ILSAI_STRESS_STEP_NEAR 0.25
+#define ILSAI_STRESS_STEP_FAR  0.5
 /* A front this far beyond a stress step, in cells, feels half of its depth. */
 #define ILSAI_STRESS_STEP_SOFT 0.05
 /* At least this part of a width is left for the asymptote when stress steps have taken theirs. */

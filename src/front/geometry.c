@@ -168,15 +168,74 @@ static void find_inner(const front_view *v, survey_cell *survey, int i, int j, v
     }
 }
 
+/* A walk from the centre of a cell along a ray, from cell to cell. */
+typedef struct walk {
+    vector ray;
+    int i, j;   /* the cell that it is in */
+    int kx, ky; /* edges that it has crossed on each axis */
+} walk;
+
 /* Distance along the ray from a cell's centre to its k-th next edge, on one axis. */
 static double edge_distance(double direction, double size, int k) {
     return direction != 0 ? (k + 0.5) * size / fabs(direction) : INFINITY;
 }
 
-/* Notes the step between two cells on the ray; height is of the stress nearer to the front. */
-static void note_step(const front_view *v, survey_cell *survey, double depth, int ahead,
-                      int behind) {
-    double height = (v->sigma[ahead] - v->sigma[behind]) / v->E_prime;
+/* Goes on into the next cell, which may be off the mesh; returns the distance of the edge before
+ * it. */
+static double walk_on(const front_view *v, walk *w) {
+    double to_x = edge_distance(w->ray.x, v->g->dx, w->kx);
+    double to_y = edge_distance(w->ray.y, v->g->dy, w->ky), next = fmin(to_x, to_y);
+    w->i += to_x == next ? (w->ray.x > 0 ? 1 : -1) : 0;
+    w->j += to_y == next ? (w->ray.y > 0 ? 1 : -1) : 0;
+    w->kx += to_x == next;
+    w->ky += to_y == next;
+    return next;
+}
+
+static int cell_of(const front_view *v, const walk *w) {
+    return w->j * v->g->nx + w->i;
+}
+
+/*
+ * The length of the fracture on the normal through (i, j), from front to front; INFINITY where the
+ * other front is further than `length` behind the cell.
+ */
+static double chord_through(const front_view *v, const survey_cell *survey, int i, int j, vector n,
+                            double length) {
+    walk at = {{-n.x, -n.y}, i, j, 0, 0};
+    for (;;) {
+        walk last = at;
+        if (!(walk_on(v, &at) < length)) {
+            return INFINITY;
+        }
+        if (!on_mesh(v, at.i, at.j) || !ilsai_is_channel(v->kind[cell_of(v, &at)])) {
+            double x = (last.i - i) * v->g->dx, y = (last.j - j) * v->g->dy;
+            return survey->s0 + hypot(x, y) - v->level[cell_of(v, &last)];
+        }
+    }
+}
+
+/* From 1 where x is under low, smoothly, to 0 where it is over high. */
+static double fade(double x, double low, double high) {
+    double u = fmax(fmin((x - low) / (high - low), 1), 0);
+    return (1 - u) * (1 - u) * (1 + 2 * u);
+}
+
+/*
+ * The part of a stress step that counts. The width of a step is that of a half-plane: a fracture is
+ * one to steps that are close to the front for its own length. And the further a step lies behind
+ * the cell, the more of its width is seen in the inner cell.
+ */
+static double step_weight(const survey_cell *survey, double depth, double cell, double chord) {
+    return fade(depth, ILSAI_STRESS_STEP_FULL * cell, ILSAI_STRESS_STEP_REACH * cell) *
+           fade((survey->s0 + depth) / chord, ILSAI_STRESS_STEP_NEAR, ILSAI_STRESS_STEP_FAR);
+}
+
+/* Notes the stress step between two cells on the ray; height is of the stress nearer to the front.
+ */
+static void note_step(const front_view *v, survey_cell *survey, double depth, double weight,
+                      int ahead, int behind) {
+    double height = weight * (v->sigma[ahead] - v->sigma[behind]) / v->E_prime;
     if (height != 0 && survey->step_count < SURVEY_STEPS) {
         survey->step[survey->step_count++] = (stress_step){depth, height};
     }
@@ -187,31 +246,32 @@ static void note_step(const front_view *v, survey_cell *survey, double depth, in
  * front, -1: away from it.
  */
 static void find_steps(const front_view *v, survey_cell *survey, int i, int j, vector n, int sign,
-                       double length) {
-    int a = i, b = j, step_x = n.x * sign > 0 ? 1 : -1, step_y = n.y * sign > 0 ? 1 : -1;
-    for (int kx = 0, ky = 0;;) {
-        double to_x = edge_distance(n.x, v->g->dx, kx), to_y = edge_distance(n.y, v->g->dy, ky);
-        double next = fmin(to_x, to_y);
-        int from = b * v->g->nx + a;
-        kx += to_x == next;
-        ky += to_y == next;
-        a += to_x == next ? step_x : 0;
-        b += to_y == next ? step_y : 0;
-        if (!(next < length) || !on_mesh(v, a, b)) {
+                       double length, double chord) {
+    double cell = v->g->dx * fabs(n.x) + v->g->dy * fabs(n.y);
+    walk at = {{sign * n.x, sign * n.y}, i, j, 0, 0};
+    for (;;) {
+        int from = cell_of(v, &at);
+        double next = walk_on(v, &at), depth = -sign * next;
+        if (!(next < length) || !on_mesh(v, at.i, at.j)) {
             return;
         }
-        int to = b * v->g->nx + a;
-        note_step(v, survey, -sign * next, sign > 0 ? to : from, sign > 0 ? from : to);
+        int to = cell_of(v, &at);
+        note_step(v, survey, depth, step_weight(survey, depth, cell, chord), sign > 0 ? to : from,
+                  sign > 0 ? from : to);
     }
 }
 
-/* The nearest behind the cell count first; in front, those that the step may reach. */
+/* Sets the stress steps: behind the cell those that count, in front those that the front may reach
+ * in this time step. */
 static void set_steps(const front_view *v, survey_cell *survey, int i, int j, vector n) {
     survey->step_count = 0;
     if (n.x != 0 || n.y != 0) {
         double cell = v->g->dx * fabs(n.x) + v->g->dy * fabs(n.y);
-        find_steps(v, survey, i, j, n, 1, survey->s0 + ILSAI_ADVANCE_MAX * survey->h);
-        find_steps(v, survey, i, j, n, -1, ILSAI_STRESS_STEP_REACH * cell);
+        double reach = ILSAI_STRESS_STEP_REACH * cell;
+        double chord =
+            chord_through(v, survey, i, j, n, (survey->s0 + reach) / ILSAI_STRESS_STEP_FAR);
+        find_steps(v, survey, i, j, n, 1, survey->s0 + ILSAI_ADVANCE_MAX * survey->h, chord);
+        find_steps(v, survey, i, j, n, -1, reach, chord);
     }
 }
 

@@ -14,13 +14,24 @@ step_depth ilsai_survey_step_depth(const survey_cell *survey, int k) {
     return (step_depth){depth * part, part * (2 - part)};
 }
 
-double ilsai_survey_step_width(const survey_cell *survey, double s) {
+/* The sum of the widths of the stress steps, each on its own. */
+static double sum_of_steps(const survey_cell *survey, double s) {
     double sum = 0;
     for (int k = 0; k < survey->step_count; k++) {
         sum += survey->step[k].height *
                ilsai_stress_step_width(s, ilsai_survey_step_depth(survey, k).value);
     }
     return sum;
+}
+
+double ilsai_survey_step_share(const survey_cell *survey) {
+    double sum = sum_of_steps(survey, survey->s);
+    return sum < 0 ? survey->w_tip / (survey->w_tip - sum) : 1;
+}
+
+double ilsai_survey_step_width(const survey_cell *survey, double s) {
+    double sum = sum_of_steps(survey, s);
+    return sum != 0 ? ilsai_survey_step_share(survey) * sum : 0;
 }
 
 /* What of the mean width of a cell at distance s from the survey's front no stress step has
@@ -86,6 +97,9 @@ void ilsai_survey_settle(const survey_widths *widths, survey_cell *survey) {
         ilsai_asymptote_row(widths->tip_material, survey->V, survey->inner >= 0 ? 2 : 1, at, point);
     }
     survey->w_asymptote = point[0].w;
+    survey->w_tip = survey->V > 0 ? point[0].w
+                                  : widths->tip_material->K_prime * sqrt(survey->s) /
+                                        widths->tip_material->E_prime;
     survey->exponent = point[0].exponent;
     survey->w_asymptote_inner = point[1].w;
 }

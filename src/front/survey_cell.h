@@ -8,7 +8,9 @@
 
 #include "tip/stress_step.h"
 
-enum { SURVEY_STEPS = 4 };
+/* More than the edges that a ray crosses where stress steps are looked for, but in cells of very
+ * unlike sides. */
+enum { SURVEY_STEPS = 24 };
 
 typedef struct survey_cell {
     /* Set when the step begins, from the fracture, and valid through all passes. */
@@ -26,6 +28,7 @@ typedef struct survey_cell {
     double s;                 /* distance to the front */
     double V;                 /* velocity of the front, (s - s0) / dt */
     double w_asymptote;       /* width of the asymptote at s */
+    double w_tip;             /* the same; of a front at rest the width that toughness gives */
     double exponent;          /* d ln w / d ln s of the asymptote at s */
     double w_asymptote_inner; /* width of the asymptote at the inner cell */
     double w;                 /* width by which the march takes the front's velocity on */

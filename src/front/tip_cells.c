@@ -139,9 +139,10 @@ static tip_cell_growth stress_step_width(const front_pass *p, const front_cell *
     for (int k = 0; k < c->from.count; k++) {
         const survey_cell *survey = &p->survey_cells[c->from.survey[k]];
         double share = survey->step_count > 0 ? step_share(p, survey) : 0;
+        double given = survey->step_count > 0 ? share * ilsai_survey_step_share(survey) : 0;
         for (int m = 0; m < survey->step_count; m++) {
             double part =
-                share * c->from.weight[k] * survey->step[m].height / (p->g->dx * p->g->dy);
+                given * c->from.weight[k] * survey->step[m].height / (p->g->dx * p->g->dy);
             tip_cell_growth one = one_step(survey, m, at, share);
             sum.volume += part * one.volume;
             sum.by_ell += part * one.by_ell;

@@ -22,6 +22,7 @@ struct coupled {
     double *stress;  /* of a channel cell: sigma + C w, the pressure that holds its width */
     size_t capacity; /* numbered cells that the arrays over them have room for */
     int closed;      /* cells that are closed or drain */
+    bool settled;    /* whether the last solve has ended with sensitivities that hold */
     double residual; /* of the last linear solve, relative */
 };
 
@@ -56,6 +57,10 @@ void ilsai_coupled_destroy(coupled **c) {
         ilsai_release(*c);
         *c = NULL;
     }
+}
+
+bool ilsai_coupled_is_settled(const coupled *c) {
+    return c->settled;
 }
 
 int ilsai_coupled_unknowns(const coupled *c) {
@@ -167,12 +172,17 @@ static ilsa_status solve_iterative(coupled *c, coupled_counts *counts) {
     return result.converged ? ILSA_OK : ILSA_STEP_REJECTED;
 }
 
+/* The width up to which a cell carries no weight for the others. */
+static double nearly_closed(const coupled_problem *problem) {
+    return ILSAI_NEARLY_CLOSED * problem->contact.closure_width;
+}
+
 /*
  * The largest part of the Newton step, at most 1, that leaves every width positive; the cells that
  * are nearly closed have contact to see to that.
  */
 static double step_length(const coupled *c, const coupled_problem *problem) {
-    double length = 1, nearly = ILSAI_NEARLY_CLOSED * problem->contact.closure_width;
+    double length = 1, nearly = nearly_closed(problem);
     for (int k = 0; k < c->cells.count; k++) {
         double w = problem->width[c->cells.cell[k]];
         if (c->cells.unknown[k] == UNKNOWN_WIDTH && w > nearly &&
@@ -183,8 +193,12 @@ static double step_length(const coupled *c, const coupled_problem *problem) {
     return length;
 }
 
-/* Changes the unknown of numbered cell k, and what its sensitivity ties to other unknowns. */
-static void move_cell(const coupled *c, const coupled_problem *problem, int k, double length) {
+/*
+ * Changes the unknown of numbered cell k, and what its sensitivity ties to other unknowns. Returns
+ * false where a tip cell would be left with next to no width: its sensitivity does not hold so far.
+ */
+static bool move_cell(const coupled *c, const coupled_problem *problem, int k, double length) {
+    bool holds = true;
     int cell = c->cells.cell[k];
     double delta = length * c->step[k], *width = &problem->width[cell];
     switch (c->cells.unknown[k]) {
@@ -198,9 +212,11 @@ static void move_cell(const coupled *c, const coupled_problem *problem, int k, d
     default:
         problem->pressure[cell] += delta;
         delta = length * ilsai_jacobian_width_change(&c->matrix, k, c->step);
+        holds = -delta <= ILSAI_WIDTH_DROP * *width || *width <= nearly_closed(problem);
         *width = fmax(*width + delta, (1 - ILSAI_WIDTH_DROP) * *width);
     }
     c->source_change[k] += length * ilsai_jacobian_source_change(&c->matrix, k, c->step);
+    return holds;
 }
 
 /* What a Newton step has done. */
@@ -208,6 +224,7 @@ typedef struct progress {
     double change; /* the largest of a width, or of a retained leak-off, over the largest width; NaN
                       where the step is no number */
     int switched;  /* cells that have closed or opened */
+    bool holds;    /* whether all sensitivities do */
 } progress;
 
 /*
@@ -235,10 +252,11 @@ static progress take_step(coupled *c, const coupled_problem *problem, double len
     contact faces = contact_of(c, problem, late);
     double change = 0, largest = 0, sum = 0;
     int switched = 0;
+    bool holds = true;
     for (int k = 0; k < c->cells.count; k++) {
         double delta = length * c->step[k], *width = &problem->width[c->cells.cell[k]];
         sum += delta;
-        move_cell(c, problem, k, length);
+        holds &= move_cell(c, problem, k, length);
         if (c->cells.unknown[k] != UNKNOWN_PRESSURE) {
             largest = *width > largest ? *width : largest;
         }
@@ -249,7 +267,7 @@ static progress take_step(coupled *c, const coupled_problem *problem, double len
             switched += ilsai_contact_opens(&faces, k);
         }
     }
-    return (progress){isfinite(sum) && largest > 0 ? change / largest : NAN, switched};
+    return (progress){isfinite(sum) && largest > 0 ? change / largest : NAN, switched, holds};
 }
 
 /*
@@ -321,7 +339,7 @@ static ilsa_status solve_linear(coupled *c, bool dense, bool changed, coupled_co
 static ilsa_status newton(coupled *c, const coupled_problem *problem, coupled_counts *counts) {
     bool dense = choose_dense(c, problem);
     int left = ILSAI_NEWTON_MAX;
-    progress made = {0, 1};
+    progress made = {0, 1, true};
     c->residual = 0;
     for (int k = 0; k < ILSAI_CONTACT_MAX && left > 0; k++) {
         bool late = k >= ILSAI_CONTACT_LATE;
@@ -336,6 +354,10 @@ static ilsa_status newton(coupled *c, const coupled_problem *problem, coupled_co
         made = take_step(c, problem, length, late);
         if (isnan(made.change)) {
             return ILSA_STEP_REJECTED;
+        }
+        c->settled = made.holds;
+        if (!made.holds) {
+            return ILSA_OK;
         }
         if (length == 1 && !made.switched && error_left(c, made.change) <= problem->tolerance) {
             return late && is_forced(c, problem) ? ILSA_STEP_REJECTED : ILSA_OK;

@@ -53,6 +53,12 @@ typedef struct coupled_counts {
  */
 ilsa_status ilsai_coupled_solve(coupled *c, const coupled_problem *problem, coupled_counts *counts);
 
+/*
+ * Whether the last solve has ended with the widths of the problem. It has not where it ended early,
+ * further from where the sensitivities were made than they hold: the front is then to be set again.
+ */
+bool ilsai_coupled_is_settled(const coupled *c);
+
 /* Number of unknowns of the last solve. */
 int ilsai_coupled_unknowns(const coupled *c);
 

@@ -225,7 +225,8 @@ ilsa_status ilsai_step(ilsa_solver *s, double dt, double time_after) {
         if (isnan(t->change)) {
             return ILSA_STEP_REJECTED;
         }
-        bool sharp = problem.tolerance <= n->tolerance; /* not a first guess of a front at rest */
+        bool sharp = problem.tolerance <= n->tolerance && /* not a first guess of a front at rest */
+                     ilsai_coupled_is_settled(n->coupled);
         agreed = sharp && t->change <= tolerance_now(s, pass);
         if (!agreed) {
             move_front(s, pass);
