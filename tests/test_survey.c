@@ -6,6 +6,7 @@
 static survey_cell beyond_two_steps(double s) {
     return (survey_cell){.s = s,
                          .h = 0.5,
+                         .w_tip = 1e15, /* so wide that no step takes a part of it */
                          .step_count = 2,
                          .step = {{.height = 2, .depth = -0.3}, {.height = -1, .depth = 0.2}}};
 }
@@ -58,11 +59,26 @@ static void widths_of_steps_add_up(void **unused) {
     }
 }
 
+/* A lower stress around the front leaves a part of the asymptote's width, however deep the drop. */
+static void a_drop_leaves_a_width(void **unused) {
+    (void)unused;
+    for (double height = 1e-6; height < 1e9; height *= 10) {
+        survey_cell survey = {.s = 0.9, .h = 0.5, .w_tip = 0.7, .step_count = 1};
+        survey.step[0] = (stress_step){.height = -height, .depth = -0.3};
+        const double depth = ilsai_survey_step_depth(&survey, 0).value;
+        const double alone = height * ilsai_stress_step_width(survey.s, depth);
+        const double left = survey.w_tip + ilsai_survey_step_width(&survey, survey.s);
+        assert_below(relative(left, survey.w_tip / (1 + alone / survey.w_tip)), 1e-6);
+        assert_true(left > 0);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(depths_begin_softly),
         cmocka_unit_test(depths_grow_as_their_derivative_says),
         cmocka_unit_test(widths_of_steps_add_up),
+        cmocka_unit_test(a_drop_leaves_a_width),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
