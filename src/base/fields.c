@@ -38,7 +38,7 @@ static void empty_cells(const fields *f, int row, size_t first, size_t count) {
         return;
     }
     for (size_t k = first; k < first + count; k++) {
-        ((double *)array)[k] = r->empty;
+        memcpy((char *)array + k * sizeof r->empty, &r->empty, sizeof r->empty);
     }
 }
 
@@ -90,11 +90,7 @@ void ilsai_fields_copy(fields *to, const fields *from, int nx, const box *b) {
 static void unfold_row(char *array, size_t size, const grid *g, const box *b, int j) {
     for (int i = b->x0; i <= b->x1 && i < g->lo_x; i++) {
         size_t cell = (size_t)ilsai_grid_cell(g, i, j), from = (size_t)ilsai_grid_fold(g, i, j);
-        if (size == sizeof(double)) {
-            ((double *)array)[cell] = ((const double *)array)[from];
-        } else {
-            array[cell] = array[from];
-        }
+        memcpy(array + cell * size, array + from * size, size);
     }
 }
 

@@ -2,18 +2,14 @@
 
 #include <math.h>
 
-typedef enum option_kind { WHOLE, CHOICE, NUMBER } option_kind;
-
 typedef struct option_row {
     const char *name;
-    option_kind kind;
     double least, most;
     bool kept;
 } option_row;
 
 static const option_row rows[OPTION_COUNT] = {
-#define ILSA_OPTION(member, kind, least, most, kept, section, ...)                                 \
-    {#member, kind, least, most, kept},
+#define ILSA_OPTION(member, kind, least, most, kept, section, ...) {#member, least, most, kept},
 #include <ilsa/options.def>
 #undef ILSA_OPTION
 };
