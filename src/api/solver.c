@@ -102,42 +102,36 @@ static ilsa_material_def start_material(const model *m) {
     return start;
 }
 
-/* Starts from a solution that was found for a radius or a time; what says which and its value. */
-static ilsa_status start(ilsa_solver *s, ilsa_status found, const penny_solution *solution,
-                         const char *what, double value) {
-    if (found != ILSA_OK) {
-        return ilsai_fail(&s->error, found, "%s = %g: no penny-shaped fracture can be found", what,
-                          value);
-    }
-    ILSAI_TRY(ilsai_start_check(s, solution));
-    ilsai_start_lay(s, solution);
-    return ILSA_OK;
-}
+/* Finds the penny of a radius, or of a time. */
+typedef ilsa_status find_penny(const ilsa_material_def *material, double rate, double value,
+                               penny_solution *solution);
 
-static ilsa_status check_start(ilsa_solver *s, const char *what, double value) {
+/* Starts from the penny that has a value of what the name says. */
+static ilsa_status start(ilsa_solver *s, const char *name, double value, find_penny *find) {
     if (!s) {
         return ilsai_check_pointer(ilsai_thread_error(), "solver", s);
     }
-    ILSAI_TRY(ilsai_check_positive(&s->error, what, value));
-    return ilsai_check_positive(&s->error, "rate of source 0", s->model.sources.at[0].def.rate);
+    double rate = s->model.sources.at[0].def.rate;
+    ILSAI_TRY(ilsai_check_positive(&s->error, name, value));
+    ILSAI_TRY(ilsai_check_positive(&s->error, "rate of source 0", rate));
+    penny_solution solution;
+    ilsa_material_def material = start_material(&s->model);
+    ilsa_status status = find(&material, rate, value, &solution);
+    if (status != ILSA_OK) {
+        return ilsai_fail(&s->error, status, "%s = %g: no penny-shaped fracture can be found", name,
+                          value);
+    }
+    ILSAI_TRY(ilsai_start_check(s, &solution));
+    ilsai_start_lay(s, &solution);
+    return ILSA_OK;
 }
 
 ilsa_status ilsa_start_radial(ilsa_solver *solver, double radius) {
-    ILSAI_TRY(check_start(solver, "radius", radius));
-    penny_solution solution;
-    ilsa_material_def material = start_material(&solver->model);
-    double rate = solver->model.sources.at[0].def.rate;
-    ilsa_status status = ilsai_penny_at_radius(&material, rate, radius, &solution);
-    return start(solver, status, &solution, "radius", radius);
+    return start(solver, "radius", radius, ilsai_penny_at_radius);
 }
 
 ilsa_status ilsa_start_radial_at(ilsa_solver *solver, double time) {
-    ILSAI_TRY(check_start(solver, "time", time));
-    penny_solution solution;
-    ilsa_material_def material = start_material(&solver->model);
-    double rate = solver->model.sources.at[0].def.rate;
-    ilsa_status status = ilsai_penny_at_time(&material, rate, time, &solution);
-    return start(solver, status, &solution, "time", time);
+    return start(solver, "time", time, ilsai_penny_at_time);
 }
 
 ilsa_status ilsa_set_rate(ilsa_solver *solver, int source, double rate) {
