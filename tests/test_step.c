@@ -1,5 +1,6 @@
 /* The physics of a step: what it must conserve, leave alone, mirror and scale. */
 #include "check.h"
+#include "front/geometry.h"
 #include "host.h"
 #include "step/solver.h"
 #include "tip/stress_step.h"
@@ -830,9 +831,34 @@ static void fronts_never_go_back(void **unused) {
     ilsa_solver_destroy(&solver);
 }
 
+/*
+ * A thin pay on a coarse mesh: in a row of survey cells with the front above and below, as after a
+ * coarsening, the normals of both sides cancel, and the step would see no front or one lengthwise.
+ */
+static void a_row_one_cell_thick_has_its_front_at_its_sides(void **unused) {
+    (void)unused;
+    enum { SIZE = 21 };
+    const ilsa_mesh_def mesh = {SIZE, SIZE, 0.1, 0.1};
+    const grid g = ilsai_grid(&mesh, 0, 0);
+    unsigned char kind[SIZE * SIZE];
+    double level[SIZE * SIZE];
+    for (int cell = 0; cell < SIZE * SIZE; cell++) {
+        int i = cell % SIZE, j = cell / SIZE, row = i > 3 && i < 17, off = abs(j - 10);
+        kind[cell] = row && off == 0   ? ILSA_CELL_SURVEY
+                     : row && off == 1 ? ILSA_CELL_TIP
+                                       : ILSA_CELL_EMPTY;
+        level[cell] = off <= 2 ? 0.1 * off - 0.02 + (row ? 1e-17 * i : 0.1) : INFINITY;
+    }
+    const front_view view = {&g, kind, level, NULL, 1};
+    survey_cell survey = {.cell = 10 * SIZE + 10, .s0 = 0.02, .h = 0.1};
+    ilsai_geometry_set(&view, &survey, 1);
+    assert_true(survey.sin_a > 0.999 && survey.cos_a < 0.01);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(volume_is_conserved),
+        cmocka_unit_test(a_row_one_cell_thick_has_its_front_at_its_sides),
         cmocka_unit_test(shut_in_without_leak_off),
         cmocka_unit_test(shut_in_with_leak_off),
         cmocka_unit_test(refused_steps_change_nothing),

@@ -55,17 +55,29 @@ static vector normal_in(const front_view *v, int i, int j) {
     return size > 0 ? (vector){n.x / size, n.y / size} : n;
 }
 
-/* Mean normal of the cells across the open faces of survey cell (i, j). */
+/*
+ * Mean normal of the cells across the faces by which survey cell (i, j) leads out of the channel.
+ * In a row one cell thick the normals of the two fronts oppose each other, and all but rounding
+ * would cancel: the normal of one side counts backwards there.
+ */
 static vector normal_seen(const front_view *v, int i, int j) {
     static const int side[GRID_FACES][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
-    vector sum = {0, 0};
+    vector seen[GRID_FACES] = {{0, 0}}, sum = {0, 0};
+    bool out[GRID_FACES] = {false};
     for (int face = 0; face < GRID_FACES; face++) {
         int a = i + side[face][0], b = j + side[face][1];
         if (on_mesh(v, a, b) && !ilsai_is_channel(v->kind[b * v->g->nx + a])) {
-            vector n = normal_in(v, a, b);
-            sum.x += n.x;
-            sum.y += n.y;
+            seen[face] = normal_in(v, a, b);
+            out[face] = true;
         }
+    }
+    bool along_x = out[GRID_LEFT] || out[GRID_RIGHT], along_y = out[GRID_DOWN] || out[GRID_UP];
+    bool row = (out[GRID_LEFT] && out[GRID_RIGHT] && !along_y) ||
+               (out[GRID_DOWN] && out[GRID_UP] && !along_x);
+    for (int face = 0; face < GRID_FACES; face++) {
+        double sign = row && (face == GRID_RIGHT || face == GRID_UP) ? -1 : 1;
+        sum.x += sign * seen[face].x;
+        sum.y += sign * seen[face].y;
     }
     double size = hypot(sum.x, sum.y);
     return size > 0 ? (vector){sum.x / size, sum.y / size} : sum;
