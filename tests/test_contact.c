@@ -279,35 +279,52 @@ static void a_snapshot_while_closing_resumes_bit_for_bit(void **state) {
     ilsa_solver_destroy(&solver);
 }
 
-/* Lengths by 2^8, times by 2^-6, forces by 2^20. */
+/* Volume and width at the source of a penny that closes, over the units of length. */
+typedef struct closing {
+    double volume, width;
+} closing;
+
+static closing close_in(double length, double time, double stress, double rate) {
+    host_scene scene = leaking_penny();
+    scene.options.tolerance = 1e-8;
+    scene.mesh.dx *= length;
+    scene.mesh.dy *= length;
+    scene.material.E_prime *= stress;
+    scene.material.mu_prime *= stress * time;
+    scene.material.K_prime *= stress * sqrt(length);
+    scene.material.C_prime *= length / sqrt(time);
+    scene.source[0].rate *= rate * length * length * length / time;
+    ilsa_solver *solver = shut_in(&scene, length);
+    double t = host_summary(solver).time;
+    for (int n = 1; n <= 20; n++) {
+        assert_int_equal(ilsa_advance(solver, t * (1 + 0.03 * n), NULL), ILSA_OK);
+    }
+    const ilsa_summary end = host_summary(solver);
+    assert_true(end.closed_cells > 20);
+    ilsa_solver_destroy(&solver);
+    return (closing){end.volume_fracture / (length * length * length), end.width_source / length};
+}
+
+static double apart(closing a, closing b) {
+    return worst_of(relative(a.volume, b.volume), relative(a.width, b.width));
+}
+
+/*
+ * Lengths by 2^8, times by 2^-6, forces by 2^20 change no more than rounding does. Which cells
+ * close first may hang on rounding: what it does is seen where the rate changes by that.
+ */
 static void closing_knows_no_units(void **state) {
     (void)state;
     const double length = 0x1p8, time = 0x1p-6, stress = 0x1p20 / (length * length);
-    double volume[2], width[2];
-    for (int k = 0; k < 2; k++) {
-        host_scene scene = leaking_penny();
-        double L = k ? length : 1, T = k ? time : 1, S = k ? stress : 1;
-        scene.options.tolerance = 1e-8;
-        scene.mesh.dx *= L;
-        scene.mesh.dy *= L;
-        scene.material.E_prime *= S;
-        scene.material.mu_prime *= S * T;
-        scene.material.K_prime *= S * sqrt(L);
-        scene.material.C_prime *= L / sqrt(T);
-        scene.source[0].rate *= L * L * L / T;
-        ilsa_solver *solver = shut_in(&scene, L);
-        double t = host_summary(solver).time;
-        for (int n = 1; n <= 20; n++) {
-            assert_int_equal(ilsa_advance(solver, t * (1 + 0.03 * n), NULL), ILSA_OK);
-        }
-        assert_true(host_summary(solver).closed_cells > 20);
-        volume[k] = host_summary(solver).volume_fracture / (L * L * L);
-        width[k] = host_summary(solver).width_source / L;
-        ilsa_solver_destroy(&solver);
+    const closing here = close_in(1, 1, 1, 1), there = close_in(length, time, stress, 1);
+    double rounding = NOTHING_YET;
+    for (int n = 1; n <= 4; n++) {
+        rounding = worst_of(rounding, apart(close_in(1, 1, 1, 1 + n * 0x1p-51), here));
     }
-    print_message("contact: in other units volume off by %.2g, width by %.2g\n",
-                  relative(volume[1], volume[0]), relative(width[1], width[0]));
-    assert_true(relative(volume[1], volume[0]) < 1e-9 && relative(width[1], width[0]) < 1e-9);
+    print_message("contact: in other units off by %.2g, by rounding %.2g\n", apart(there, here),
+                  rounding);
+    assert_below(apart(there, here), larger_of(1e-9, 2 * rounding));
+    assert_below(rounding, 1e-3);
 }
 
 static void a_host_sets_the_closure_width(void **state) {
