@@ -196,7 +196,12 @@ static void distances_grow_with_the_width(void **state) {
         if (w < DBL_MIN || !(wider <= DBL_MAX) ||
             ilsa_tip_distance(&p.law, wider, p.s, p.dt, &further, &faster) != ILSA_OK)
             continue;
-        assert_int_equal(ilsa_tip_distance(&p.law, w, p.s, p.dt, &s, &V), ILSA_OK);
+        if (ilsa_tip_distance(&p.law, w, p.s, p.dt, &s, &V) != ILSA_OK) {
+            if (!(further / p.s >
+                  1e200)) /* beyond that a distance may be refused, see ilsa/tip.h */
+                fail_at("distance of the narrower", &p, w, wider);
+            continue;
+        }
         if (!(further >= s && faster >= V * (1.0 - 1e-12)))
             fail_at("distance by w", &p, s, further);
         compared++;

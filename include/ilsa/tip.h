@@ -53,6 +53,8 @@ ILSA_API ilsa_status ilsa_tip_moments(const ilsa_material_def *scaled, double V,
  * to the front, and the velocity V = (s - s0) / dt >= 0, when the distance was s0 > 0 a time dt > 0
  * ago. V = 0 and s = s0 where the stress intensity is below the toughness (K_hat > 1 at s0). With
  * mu_prime = 0 the distance is the larger of s0 and (E' w / K')^2.
+ * A distance of more than 1e200 times s0 may be refused with
+ * ILSA_ERR_VALUE though it is in the double range.
  * ILSA_ERR_NULL, ILSA_ERR_VALUE.
  */
 ILSA_API ilsa_status ilsa_tip_distance(const ilsa_material_def *scaled, double w, double s0,
