@@ -315,11 +315,12 @@ static void check_tip(draft *d, const section *s, const scene *sc) {
         draft_range_error(d, s, RUN_tip, "full or toughness-viscosity where the toughness is 0");
 }
 
-/* The options that the library's table has for a scene file; 0 where the file does not say. */
+/* The options that the library's table has for a scene file; 0 where the file does not say. A
+ * choice goes through a type that every enum holds, signed or not. */
 static void take_options(ilsa_solver_def *options, section *const *s) {
     *options = (ilsa_solver_def){0};
 #define OPTION_WHOLE(value)  (int)(value)
-#define OPTION_CHOICE(value) (int)(value)
+#define OPTION_CHOICE(value) (unsigned char)(value)
 #define OPTION_NUMBER(value) (value)
 #define OPTION_OF_MESH(member, kind)                                                               \
     options->member = OPTION_##kind(number_or(s[SECTION_MESH], MESH_##member, 0));
