@@ -23,7 +23,7 @@ static ilsa_summary pumped(const host_scene *scene, double radius, double t_end)
         fail_msg("radius %g: %s", radius, ilsa_last_error(solver));
     }
     ilsa_summary end = host_summary(solver);
-    if (end.total.rejected > 1 + 0.02 * (double)end.total.steps) {
+    if ((double)end.total.rejected > 1 + 0.02 * (double)end.total.steps) {
         fail_msg("radius %g: %ld of %ld attempts refused", radius, end.total.rejected,
                  end.total.rejected + end.total.steps);
     }
