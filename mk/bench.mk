@@ -1,6 +1,6 @@
 # Programs that measure and draw.
 
-.PHONY: benches bench accuracy speed extremes figures paper-figures
+.PHONY: benches bench accuracy speed extremes field figures paper-figures
 benches: $(BENCH_PROGRAMS) ## builds all of bench/
 
 bench: $(BENCH_PROGRAMS) ## the quick programs of bench/
@@ -14,6 +14,10 @@ speed: $(BENCH_SPEED:%=$(BIN)/bench_%) ## the tables of docs/speed.md, in a quar
 
 extremes: $(BIN)/bench_extremes ## the table of docs/extremes.md, in three minutes
 	$<
+
+LEVEL = 3
+field: $(BIN)/bench_field ## a hundred field scenes at LEVEL=3, judged: minutes
+	$< -l $(LEVEL) $(wildcard tests/data/field/*.ini)
 
 figures: ## the figures of every scene that was run into out/
 	@set -e; for h in $(wildcard out/*/history.csv); do examples/figures.sh $${h%/history.csv}; done

@@ -10,22 +10,28 @@ HEADERS  := $(wildcard include/ilsa/*.h include/ilsa/*.def)
 EXAMPLES := $(call names,$(wildcard examples/*.c))
 RUN      := $(wildcard examples/ilsa_run/*.c)
 
+# What reads scene files is linked with the parts of ilsa-run, and is left out where there is no inih.
+READ_SCENES := field test_field_scenes fuzz_scene
+NEED_INIH   := $(if $(INIH_PC),,$(READ_SCENES))
+SCENES_WITH := $(filter-out %/main.c,$(RUN)) $(wildcard bench/scene_files/*.c)
+
 # tests/test_*.c are programs, tests/long_*.c programs of `make check-long`, the rest is linked into
 # all of them; bench/common*.c is linked into all of bench/ and of tests/.
-TESTS      := $(call names,$(wildcard tests/test_*.c))
+TESTS      := $(filter-out $(NEED_INIH),$(call names,$(wildcard tests/test_*.c)))
 TESTS_LONG := $(call names,$(wildcard tests/long_*.c))
 TESTS_WITH := $(filter-out tests/test_% tests/long_%,$(wildcard tests/*.c))
-# tests/fuzz/fuzz_*.c are fuzzers, whose corpora are tests too; the one of scenes needs inih.
-FUZZERS    := $(filter-out $(if $(INIH_PC),,fuzz_scene),$(call names,$(wildcard tests/fuzz/fuzz_*.c)))
+# tests/fuzz/fuzz_*.c are fuzzers, whose corpora are tests too.
+FUZZERS    := $(filter-out $(NEED_INIH),$(call names,$(wildcard tests/fuzz/fuzz_*.c)))
 FUZZ_WITH  := tests/fuzz/fuzz.c $(if $(filter fuzz,$(FLAVOUR)),,tests/fuzz/replay.c)
 BENCH_WITH := $(wildcard bench/common*.c)
-BENCH      := $(call names,$(filter-out $(BENCH_WITH),$(wildcard bench/*.c)))
+BENCH      := $(filter-out $(NEED_INIH),$(call names,$(filter-out $(BENCH_WITH),$(wildcard bench/*.c))))
 
 # `make accuracy` runs bench/accuracy*.c, `make speed` those of BENCH_SPEED, `make extremes` its own,
+# `make field` its own,
 # nobody bench/long_*.c, tests/same_answer.sh bench/answer.c, `make bench` the others.
 BENCH_ACCURACY := $(filter accuracy%,$(BENCH))
 BENCH_SPEED    := $(filter speed profile tradeoff features,$(BENCH))
-BENCH_QUICK    := $(filter-out accuracy% extremes long_% answer $(BENCH_SPEED),$(BENCH))
+BENCH_QUICK    := $(filter-out accuracy% extremes field long_% answer $(BENCH_SPEED),$(BENCH))
 
 PROGRAMS = $(EXAMPLES:%=$(BIN)/%) $(if $(and $(RUN),$(INIH_PC)),$(BIN)/ilsa-run)
 
@@ -108,7 +114,7 @@ $(BIN)/ilsa-run: $(call objects,$(RUN)) $(LIB_A)
 
 BENCH_PROGRAMS = $(BENCH:%=$(BIN)/bench_%)
 $(BENCH_PROGRAMS): $(BIN)/bench_%: $(B)/obj/bench/%.o $(call objects,$(BENCH_WITH)) $(LIB_A)
-	$(call link)
+	$(call link,$(scene_libs))
 
 # What tests/failing.c stands in for.
 FAILING = malloc calloc realloc pthread_create fftw_alloc_real fftw_alloc_complex \
@@ -116,10 +122,12 @@ FAILING = malloc calloc realloc pthread_create fftw_alloc_real fftw_alloc_comple
 
 TEST_PROGRAMS = $(TESTS:%=$(BIN)/%) $(TESTS_LONG:%=$(BIN)/%)
 $(TEST_PROGRAMS): $(BIN)/%: $(B)/obj/tests/%.o $(call objects,$(TESTS_WITH) $(BENCH_WITH)) $(LIB_A)
-	$(call link,$(FAILING:%=-Wl$(comma)--wrap=%) $(call pc_libs,$(CMOCKA_PC)))
+	$(call link,$(FAILING:%=-Wl$(comma)--wrap=%) $(call pc_libs,$(CMOCKA_PC)) $(scene_libs))
 
 # With libFuzzer's main in the flavour fuzz, with one that feeds the corpus in all others.
 $(FUZZERS:%=$(BIN)/%): LDFLAGS += $(if $(filter fuzz,$(FLAVOUR)),-fsanitize=fuzzer)
 $(FUZZERS:%=$(BIN)/%): $(BIN)/%: $(B)/obj/tests/fuzz/%.o $(call objects,$(FUZZ_WITH)) $(LIB_A)
-	$(call link,$(if $(filter %/fuzz_scene,$@),$(call pc_libs,$(INIH_PC))))
-$(BIN)/fuzz_scene: $(call objects,$(filter-out %/main.c,$(RUN)))
+	$(call link,$(scene_libs))
+
+scene_libs = $(if $(filter $(READ_SCENES),$(patsubst bench_%,%,$(@F))),$(call pc_libs,$(INIH_PC)))
+$(READ_SCENES:%=$(BIN)/%) $(BIN)/bench_field: $(call objects,$(SCENES_WITH))

@@ -71,6 +71,30 @@ static void moment_is_the_integral(void **unused) {
     assert_below(worst, 1e-6);
 }
 
+/* What a step a distance d behind the front adds to the volume of a cell. */
+static tip_cell_step step_in_cell(double d, const tip_cell_front *front) {
+    const tip_cell_nodes nodes = ilsai_tip_cell_nodes(front);
+    return ilsai_tip_cell_step(d, &nodes);
+}
+
+/* The derivative by d against differences: the front passes a step by this alone. */
+static void volume_grows_with_the_depth_of_the_step(void **unused) {
+    (void)unused;
+    double worst = NOTHING_YET;
+    for (double alpha = 0; alpha < 1.6; alpha += 0.31)
+        for (double ell = 0.2; ell < 2; ell += 0.35)
+            for (double d = 0.013; d < 30; d *= 1.9) {
+                const tip_cell_front f = {ell, cos(alpha), fabs(sin(alpha)), 1, 0.7};
+                const double part = 1e-4, now = step_in_cell(d, &f).volume;
+                const double more = step_in_cell(d * (1 + part), &f).volume;
+                const double less = step_in_cell(d * (1 - part), &f).volume;
+                const double slope = (more - less) / (2 * part);
+                worst = worst_of(worst, fabs(slope - d * step_in_cell(d, &f).by_d) / now);
+            }
+    print_message("jump: derivative by its depth %.1e off differences, of the volume\n", worst);
+    assert_below(worst, 1e-6);
+}
+
 /* The part of it in a cell, by midpoints. */
 static void volume_in_a_cell(void **unused) {
     (void)unused;
@@ -86,11 +110,11 @@ static void volume_in_a_cell(void **unused) {
                 sum += ilsai_stress_step_width(ell - x * f.cos_a - y * f.sin_a, 0.6);
             }
             sum *= f.dx * f.dy / (POINTS * POINTS);
-            worst = worst_of(worst, fabs(ilsai_tip_cell_step_volume(0.6, &f) - sum));
+            worst = worst_of(worst, fabs(step_in_cell(0.6, &f).volume - sum));
         }
     print_message("jump: volume in a cell %.1e off midpoints\n", worst);
     assert_below(worst, 1e-3);
-    assert_true(ilsai_tip_cell_step_volume(1, &(tip_cell_front){-1, 1, 0, 1, 1}) == 0);
+    assert_true(step_in_cell(1, &(tip_cell_front){-1, 1, 0, 1, 1}).volume == 0);
 }
 
 /* ---- Fronts just inside a barrier -------------------------------------------------------------
@@ -175,6 +199,7 @@ int main(void) {
         cmocka_unit_test(width_carries_the_jump),
         cmocka_unit_test(front_feels_no_jump),
         cmocka_unit_test(moment_is_the_integral),
+        cmocka_unit_test(volume_grows_with_the_depth_of_the_step),
         cmocka_unit_test(volume_in_a_cell),
         cmocka_unit_test(coarse_fronts_stand_where_fine_ones_do),
         cmocka_unit_test(barriers_have_no_axis),

@@ -93,7 +93,8 @@ static void volumes_grow_as_their_derivatives_say(void **state) {
         for (double alpha = 0.0; alpha < 1.6; alpha += 0.2)
             for (double ell = 0.05; ell < 2.5; ell += 0.15) {
                 tip_cell_front at = make_front(ell, alpha, 1.5, 0.8);
-                const tip_cell_growth now = ilsai_tip_cell_growth(&laws[n], V, 0, &at);
+                const tip_cell_nodes nodes = ilsai_tip_cell_nodes(&at);
+                const tip_cell_growth now = ilsai_tip_cell_growth(&laws[n], V, 0, &nodes);
                 const double faster = ilsai_tip_cell_volume(&laws[n], V * (1 + step), 0, &at);
                 const double slower = ilsai_tip_cell_volume(&laws[n], V * (1 - step), 0, &at);
                 at.ell = ell * (1 + step);

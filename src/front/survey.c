@@ -24,27 +24,29 @@ static double sum_of_steps(const survey_cell *survey, double s) {
     return sum;
 }
 
-double ilsai_survey_step_share(const survey_cell *survey) {
-    double sum = sum_of_steps(survey, survey->s);
+/* The part of the widths of the steps for their sum at the distance of the front. */
+static double share_of(const survey_cell *survey, double sum) {
     return sum < 0 ? survey->w_tip / (survey->w_tip - sum) : 1;
 }
 
-double ilsai_survey_step_width(const survey_cell *survey, double s) {
-    double sum = sum_of_steps(survey, s);
-    return sum != 0 ? ilsai_survey_step_share(survey) * sum : 0;
+double ilsai_survey_step_share(const survey_cell *survey) {
+    return share_of(survey, sum_of_steps(survey, survey->s));
 }
 
-/* What of the mean width of a cell at distance s from the survey's front no stress step has
- * brought. */
-static double smooth_width(const survey_widths *widths, const survey_cell *survey, int cell,
-                           double distance) {
-    double w = widths->width[cell];
-    return fmax(w - ilsai_survey_step_width(survey, distance), ILSAI_STRESS_STEP_LEFT * w);
+double ilsai_survey_step_width(const survey_cell *survey, double s) {
+    double here = sum_of_steps(survey, survey->s);
+    double sum = s == survey->s ? here : sum_of_steps(survey, s);
+    return sum != 0 ? share_of(survey, here) * sum : 0;
+}
+
+/* What of the mean width of a cell no stress step has brought, which add so much there. */
+static double smooth_width(double w, double added) {
+    return fmax(w - added, ILSAI_STRESS_STEP_LEFT * w);
 }
 
 double ilsai_survey_smooth_slope(const survey_widths *widths, const survey_cell *survey) {
     double w = widths->width[survey->cell];
-    return smooth_width(widths, survey, survey->cell, survey->s) > ILSAI_STRESS_STEP_LEFT * w
+    return smooth_width(w, survey->step_width) > ILSAI_STRESS_STEP_LEFT * w
                ? 1
                : ILSAI_STRESS_STEP_LEFT;
 }
@@ -61,7 +63,7 @@ typedef struct first_term {
 static first_term split_width(const survey_widths *widths, const survey_cell *survey) {
     self_term_front seen = ilsai_survey_front(survey);
     double mean = ilsai_self_term_mean(widths->dx, widths->dy, &seen);
-    double w = smooth_width(widths, survey, survey->cell, survey->s) / mean;
+    double w = smooth_width(widths->width[survey->cell], survey->step_width) / mean;
     first_term out = {w, ilsai_survey_smooth_slope(widths, survey) / mean, 0};
     if (survey->inner < 0) {
         return out;
@@ -70,7 +72,8 @@ static first_term split_width(const survey_widths *widths, const survey_cell *su
            there = survey->w_asymptote_inner;
     seen.s = deep;
     there *= ilsai_self_term_mean(widths->dx, widths->dy, &seen);
-    double inner = smooth_width(widths, survey, survey->inner, deep);
+    double added = survey->step_count > 0 ? survey->step_share * sum_of_steps(survey, deep) : 0;
+    double inner = smooth_width(widths->width[survey->inner], added);
     if (!(w * there > 0 && inner > 0)) {
         return out; /* a width that Newton's iteration has brought down to nothing */
     }
@@ -102,6 +105,9 @@ void ilsai_survey_settle(const survey_widths *widths, survey_cell *survey) {
                                         widths->tip_material->E_prime;
     survey->exponent = point[0].exponent;
     survey->w_asymptote_inner = point[1].w;
+    double sum = survey->step_count > 0 ? sum_of_steps(survey, survey->s) : 0;
+    survey->step_share = share_of(survey, sum);
+    survey->step_width = sum != 0 ? survey->step_share * sum : 0;
 }
 
 double ilsai_survey_width(const survey_widths *widths, const survey_cell *survey) {

@@ -21,8 +21,8 @@ typedef struct survey_widths {
     double tolerance;    /* of the front, in cells */
 } survey_widths;
 
-/* Sets width and exponent of the asymptote for the distance and velocity that the survey cell has.
- * The functions below need them. */
+/* Sets width and exponent of the asymptote, and what the stress steps add, for the distance and
+ * velocity that the survey cell has. The functions below need them. */
 void ilsai_survey_settle(const survey_widths *widths, survey_cell *survey);
 
 /*

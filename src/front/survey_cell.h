@@ -31,6 +31,8 @@ typedef struct survey_cell {
     double w_tip;             /* the same; of a front at rest the width that toughness gives */
     double exponent;          /* d ln w / d ln s of the asymptote at s */
     double w_asymptote_inner; /* width of the asymptote at the inner cell */
+    double step_share;        /* part of the widths of its stress steps that it is given */
+    double step_width;        /* what they add at s with this part */
     double w;                 /* width by which the march takes the front's velocity on */
 
     /* Set when a pass inverts the widths of the coupled solve, and read by the next pass. */

@@ -107,51 +107,6 @@ static void leak_at_front(const front_pass *p, const front_cell *c, tip_path *pa
 }
 
 /*
- * The part of the widths of its stress steps that a front is believed: in its survey cell they
- * cannot be more than all there is. A high barrier lets a front in by less than distances are known
- * to.
- */
-static double step_share(const front_pass *p, const survey_cell *survey) {
-    double w = ilsai_survey_step_width(survey, survey->s), most = p->old->width[survey->cell];
-    return w > most ? most / w : 1;
-}
-
-/* What stress step k adds to a cell; by_ell with the distance to it, which grows with ell: a front
- * that has just passed a high one moves its width by that alone. */
-static tip_cell_growth one_step(const survey_cell *survey, int k, const tip_cell_front *at,
-                                double share) {
-    step_depth d = ilsai_survey_step_depth(survey, k);
-    double more = ILSAI_DIFFERENCE * d.value;
-    tip_cell_growth one = ilsai_tip_cell_step_growth(d.value, at);
-    if (more > 0 && share == 1) {
-        double deeper = ilsai_tip_cell_step_growth(d.value + more, at).volume;
-        one.by_ell += d.by_s * (deeper - one.volume) / more;
-    }
-    return one;
-}
-
-/* Mean over the cell of what the steps of the stress behind its front add, as the survey cells see
- * them.
- */
-static tip_cell_growth stress_step_width(const front_pass *p, const front_cell *c,
-                                         const tip_cell_front *at) {
-    tip_cell_growth sum = {0, 0, 0};
-    for (int k = 0; k < c->from.count; k++) {
-        const survey_cell *survey = &p->survey_cells[c->from.survey[k]];
-        double share = survey->step_count > 0 ? step_share(p, survey) : 0;
-        double given = survey->step_count > 0 ? share * ilsai_survey_step_share(survey) : 0;
-        for (int m = 0; m < survey->step_count; m++) {
-            double part =
-                given * c->from.weight[k] * survey->step[m].height / (p->g->dx * p->g->dy);
-            tip_cell_growth one = one_step(survey, m, at, share);
-            sum.volume += part * one.volume;
-            sum.by_ell += part * one.by_ell;
-        }
-    }
-    return sum;
-}
-
-/*
  * Mean width (4.18), and its derivative: of a moving front by an advance within the step, which is
  * one of the velocity too; of one at rest by the logarithm of its stress intensity. In a cell that
  * has just filled it is the first guess of the coupled solve.
@@ -160,18 +115,52 @@ typedef struct tip_width {
     double value, slope;
 } tip_width;
 
+/*
+ * The part of the widths of its stress steps that a front is believed: in its survey cell they
+ * cannot be more than all there is. A high barrier lets a front in by less than distances are known
+ * to.
+ */
+static double step_belief(const front_pass *p, const survey_cell *survey) {
+    double most = p->old->width[survey->cell];
+    return survey->step_width > most ? most / survey->step_width : 1;
+}
+
+/*
+ * Mean over the cell of what the steps of the stress behind its front add, as the survey cells see
+ * them, and its derivative. That goes with the distance to the steps too, which grows with ell: a
+ * front that has just passed a high one moves its width by that alone.
+ */
+static tip_width stress_step_width(const front_pass *p, const front_cell *c,
+                                   const tip_cell_nodes *nodes) {
+    tip_width sum = {0, 0};
+    for (int k = 0; k < c->from.count; k++) {
+        const survey_cell *survey = &p->survey_cells[c->from.survey[k]];
+        double belief = survey->step_count > 0 ? step_belief(p, survey) : 0;
+        double given = belief * survey->step_share * c->from.weight[k] / (p->g->dx * p->g->dy);
+        for (int m = 0; m < survey->step_count; m++) {
+            step_depth d = ilsai_survey_step_depth(survey, m);
+            tip_cell_step one = ilsai_tip_cell_step(d.value, nodes);
+            double deeper = belief == 1 ? d.by_s * one.by_d : 0;
+            sum.value += given * survey->step[m].height * one.volume;
+            sum.slope += given * survey->step[m].height * (one.by_ell + deeper);
+        }
+    }
+    return sum;
+}
+
 static tip_width mean_width(const front_pass *p, const front_cell *c) {
     tip_cell_front at = {c->ell, c->cos_a, c->sin_a, p->g->dx, p->g->dy};
     double K_I = p->material->E_prime * c->K_num / c->K_den, V = c->V > 0 ? c->V : 0;
     double area = p->g->dx * p->g->dy;
-    tip_cell_growth growth = ilsai_tip_cell_growth(p->widths.tip_material, V, K_I, &at);
+    tip_cell_nodes nodes = ilsai_tip_cell_nodes(&at);
+    tip_cell_growth growth = ilsai_tip_cell_growth(p->widths.tip_material, V, K_I, &nodes);
     tip_width w = {growth.volume / area, V > 0 ? growth.by_ell / area : growth.volume / area};
     if (V > 0) {
         w.slope += growth.by_log_V / (area * V * p->dt);
     }
-    tip_cell_growth added = stress_step_width(p, c, &at);
-    w.slope += V > 0 ? added.by_ell : 0;
-    w.value = fmax(w.value + added.volume, ILSAI_STRESS_STEP_LEFT * w.value);
+    tip_width added = stress_step_width(p, c, &nodes);
+    w.slope += V > 0 ? added.slope : 0;
+    w.value = fmax(w.value + added.value, ILSAI_STRESS_STEP_LEFT * w.value);
     return w;
 }
 

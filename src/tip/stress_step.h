@@ -20,8 +20,17 @@ typedef struct stress_step {
     double height; /* stress in front of the step less that behind it, over E' */
 } stress_step;
 
-/* The width w above at distance s for h / E' = 1, and its integral over 0 .. s. Both are 0 where
- * s <= 0 or d <= 0. */
+/*
+ * The width w above at distance s for h / E' = 1, its integral over 0 .. s, and the derivative of
+ * that by d. All are 0 where s <= 0 or d <= 0. The integral is d^2 times a function of s / d, so
+ * that d times its derivative by d is twice the integral less s w.
+ */
+typedef struct stress_step_point {
+    double width, moment, moment_by_d;
+} stress_step_point;
+stress_step_point ilsai_stress_step_at(double s, double d);
+
+/* The width alone, and the integral alone. */
 double ilsai_stress_step_width(double s, double d);
 double ilsai_stress_step_moment(double s, double d);
 

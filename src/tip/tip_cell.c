@@ -38,19 +38,12 @@ double ilsai_tip_cell_area(const tip_cell_front *front) {
     return c.length * (c.H - 0.5 * rest * (rest / c.h));
 }
 
-/* Distances and weights of a sum over the wet part of the cell. */
-enum { TIP_CELL_NODES = 8 };
-typedef struct wet_nodes {
-    int count;
-    double xi[TIP_CELL_NODES], weight[TIP_CELL_NODES];
-} wet_nodes;
-
 /*
  * Adds the mean over the strip [far - h, far] of what is 0 for xi < 0. The nodes are those of
  * Gauss-Legendre in r = xi^(1/3), where M0 is smooth up to the front (r^(9/2) to r^5 there): error
  * 1e-5 with 4, and with 2 where the front is far.
  */
-static void add_strip(wet_nodes *n, double h, double far, double sign) {
+static void add_strip(tip_cell_nodes *n, double h, double far, double sign) {
     static const double node[6] = {0.78867513459481288, 0.21132486540518712, 0.93056815579702629,
                                    0.66999052179242813, 0.33000947820757187, 0.069431844202973712};
     static const double weight[6] = {0.5,
@@ -71,9 +64,9 @@ static void add_strip(wet_nodes *n, double h, double far, double sign) {
 }
 
 /* The volume is the sum of M0 by these, its derivative by ell that of the width. */
-static wet_nodes nodes_of(const tip_cell_front *front) {
+tip_cell_nodes ilsai_tip_cell_nodes(const tip_cell_front *front) {
     const tip_cell_chord c = chord_of(front);
-    wet_nodes n = {0};
+    tip_cell_nodes n = {0};
     if (front->ell > 0.0) {
         add_strip(&n, c.h, front->ell, c.length);
     }
@@ -84,7 +77,7 @@ static wet_nodes nodes_of(const tip_cell_front *front) {
 }
 
 /* Width and M0 at the nodes; of a front at rest those of its K_I. */
-static void row_of(const ilsa_material_def *law, double V, double K_I, const wet_nodes *n,
+static void row_of(const ilsa_material_def *law, double V, double K_I, const tip_cell_nodes *n,
                    asymptote_point *point) {
     if (V > 0.0) {
         ilsai_asymptote_row(law, V, n->count, n->xi, point);
@@ -97,36 +90,33 @@ static void row_of(const ilsa_material_def *law, double V, double K_I, const wet
 }
 
 tip_cell_growth ilsai_tip_cell_growth(const ilsa_material_def *law, double V, double K_I,
-                                      const tip_cell_front *front) {
-    const wet_nodes n = nodes_of(front);
+                                      const tip_cell_nodes *nodes) {
     asymptote_point point[TIP_CELL_NODES];
     tip_cell_growth sum = {0.0, 0.0, 0.0};
-    row_of(law, V, K_I, &n, point);
-    for (int k = 0; k < n.count; k++) {
-        sum.volume += n.weight[k] * point[k].M0;
-        sum.by_ell += n.weight[k] * point[k].w;
-        sum.by_log_V += n.weight[k] * point[k].M0 * point[k].by_V;
+    row_of(law, V, K_I, nodes, point);
+    for (int k = 0; k < nodes->count; k++) {
+        sum.volume += nodes->weight[k] * point[k].M0;
+        sum.by_ell += nodes->weight[k] * point[k].w;
+        sum.by_log_V += nodes->weight[k] * point[k].M0 * point[k].by_V;
     }
     return sum;
 }
 
 double ilsai_tip_cell_volume(const ilsa_material_def *law, double V, double K_I,
                              const tip_cell_front *front) {
-    return ilsai_tip_cell_growth(law, V, K_I, front).volume;
+    const tip_cell_nodes nodes = ilsai_tip_cell_nodes(front);
+    return ilsai_tip_cell_growth(law, V, K_I, &nodes).volume;
 }
 
-tip_cell_growth ilsai_tip_cell_step_growth(double d, const tip_cell_front *front) {
-    const wet_nodes n = nodes_of(front);
-    tip_cell_growth sum = {0.0, 0.0, 0.0};
-    for (int k = 0; k < n.count; k++) {
-        sum.volume += n.weight[k] * ilsai_stress_step_moment(n.xi[k], d);
-        sum.by_ell += n.weight[k] * ilsai_stress_step_width(n.xi[k], d);
+tip_cell_step ilsai_tip_cell_step(double d, const tip_cell_nodes *nodes) {
+    tip_cell_step sum = {0.0, 0.0, 0.0};
+    for (int k = 0; k < nodes->count; k++) {
+        const stress_step_point at = ilsai_stress_step_at(nodes->xi[k], d);
+        sum.volume += nodes->weight[k] * at.moment;
+        sum.by_ell += nodes->weight[k] * at.width;
+        sum.by_d += nodes->weight[k] * at.moment_by_d;
     }
     return sum;
-}
-
-double ilsai_tip_cell_step_volume(double d, const tip_cell_front *front) {
-    return ilsai_tip_cell_step_growth(d, front).volume;
 }
 
 void ilsai_tip_cell_enter(tip_cell_history *history, double t_A) {

@@ -26,6 +26,14 @@ typedef struct tip_cell_front {
 double ilsai_tip_cell_volume(const ilsa_material_def *law, double V, double K_I,
                              const tip_cell_front *front);
 
+/* Distances and weights of the sums over the wet part of a cell that the functions here take. */
+enum { TIP_CELL_NODES = 8 };
+typedef struct tip_cell_nodes {
+    int count;
+    double xi[TIP_CELL_NODES], weight[TIP_CELL_NODES];
+} tip_cell_nodes;
+tip_cell_nodes ilsai_tip_cell_nodes(const tip_cell_front *front);
+
 /*
  * The volume with its derivatives by ell and by ln V, each with the other held. The second one
  * leaves out the derivative of M0 / w, which is less than 0.03 of the volume.
@@ -34,12 +42,14 @@ typedef struct tip_cell_growth {
     double volume, by_ell, by_log_V;
 } tip_cell_growth;
 tip_cell_growth ilsai_tip_cell_growth(const ilsa_material_def *law, double V, double K_I,
-                                      const tip_cell_front *front);
+                                      const tip_cell_nodes *nodes);
 
-/* The volume, and with its derivatives, of the width that a stress step of h / E' = 1 a distance d
- * behind the front adds, see stress_step.h. */
-double ilsai_tip_cell_step_volume(double d, const tip_cell_front *front);
-tip_cell_growth ilsai_tip_cell_step_growth(double d, const tip_cell_front *front);
+/* The volume of the width that a stress step of h / E' = 1 a distance d behind the front adds, see
+ * stress_step.h, and its derivatives by ell and by d, each with the other held. */
+typedef struct tip_cell_step {
+    double volume, by_ell, by_d;
+} tip_cell_step;
+tip_cell_step ilsai_tip_cell_step(double d, const tip_cell_nodes *nodes);
 
 /* The area of the wet part of the cell, 0 .. dx dy. */
 double ilsai_tip_cell_area(const tip_cell_front *front);
