@@ -37,24 +37,27 @@ static void depend_on(sensitivity *r, int cell, const derivative *a, double weig
 }
 
 /* By the widths that place the front of a survey cell. */
-static void depend_on_survey(sensitivity *r, const survey_cell *survey, const derivative *a,
-                             double weight) {
-    depend_on(r, survey->cell, a, weight * survey->ds_dw);
+static void depend_on_survey(sensitivity *r, const survey_cell *survey, const derivative *a) {
+    depend_on(r, survey->cell, a, survey->ds_dw);
     if (survey->inner >= 0) {
-        depend_on(r, survey->inner, a, weight * survey->ds_inner);
+        depend_on(r, survey->inner, a, survey->ds_inner);
     }
 }
 
 /* A front at rest changes its stress intensity, (4.19); a moving one moves. */
 static sensitivity sensitivity_of_cell(const front_pass *p, const front_cell *c,
-                                       double width_slope) {
+                                       const width_slopes *slopes) {
     sensitivity r = {.cell = c->cell};
-    derivative moving = differentiate(p, c, width_slope), resting = {width_slope, 0, 0};
+    bool tip = p->trial->kind[c->cell] == ILSA_CELL_TIP;
+    derivative moving = differentiate(p, c, slopes->advance), resting = {slopes->advance, 0, 0};
     for (int k = 0; k < c->from.count; k++) {
         const survey_cell *survey = &p->survey_cells[c->from.survey[k]];
         if (c->V > 0) {
-            depend_on_survey(&r, survey, &moving, c->from.weight[k]);
-        } else if (p->trial->kind[c->cell] == ILSA_CELL_TIP && c->K_num > 0) {
+            double weight = c->from.weight[k];
+            derivative by_s = {weight * moving.width + (tip ? slopes->past_steps[k] : 0),
+                               weight * moving.source_term, weight * moving.pressure};
+            depend_on_survey(&r, survey, &by_s);
+        } else if (tip && c->K_num > 0) {
             double part = ilsai_survey_smooth_slope(&p->widths, survey);
             depend_on(&r, survey->cell, &resting, part * sqrt(survey->s) / c->K_num);
         }
@@ -75,7 +78,7 @@ static sensitivity sensitivity_of_survey(const front_pass *p, const survey_cell 
     if (survey->ds_dw > 0) {
         a.pressure /= survey->ds_dw;
     }
-    depend_on_survey(&r, survey, &a, 1);
+    depend_on_survey(&r, survey, &a);
     return r;
 }
 
@@ -100,7 +103,7 @@ static void set_of_reached_cells(void *context, int first, int end) {
         const front_cell *c = &l->reached[k];
         bool wet = l->p->trial->kind[c->cell] != ILSA_CELL_EMPTY;
         l->t->sensitivities[l->p->survey_count + k] =
-            wet ? sensitivity_of_cell(l->p, c, l->t->width_slope[k])
+            wet ? sensitivity_of_cell(l->p, c, &l->t->width_slopes[k])
                 : (sensitivity){.cell = c->cell};
     }
 }

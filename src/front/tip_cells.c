@@ -9,7 +9,7 @@
 
 void ilsai_tip_cells_destroy(tip_cells *t) {
     ilsai_tip_paths_destroy(&t->paths);
-    ilsai_release(t->width_slope);
+    ilsai_release(t->width_slopes);
     ilsai_release(t->sensitivities);
     *t = (tip_cells){0};
 }
@@ -112,7 +112,8 @@ static void leak_at_front(const front_pass *p, const front_cell *c, tip_path *pa
  * has just filled it is the first guess of the coupled solve.
  */
 typedef struct tip_width {
-    double value, slope;
+    double value;
+    width_slopes slopes;
 } tip_width;
 
 /*
@@ -127,12 +128,12 @@ static double step_belief(const front_pass *p, const survey_cell *survey) {
 
 /*
  * Mean over the cell of what the steps of the stress behind its front add, as the survey cells see
- * them, and its derivative. That goes with the distance to the steps too, which grows with ell: a
- * front that has just passed a high one moves its width by that alone.
+ * them, and its derivatives: a front that has just passed a high step moves its width by its
+ * distance to the step alone.
  */
 static tip_width stress_step_width(const front_pass *p, const front_cell *c,
                                    const tip_cell_nodes *nodes) {
-    tip_width sum = {0, 0};
+    tip_width sum = {0};
     for (int k = 0; k < c->from.count; k++) {
         const survey_cell *survey = &p->survey_cells[c->from.survey[k]];
         double belief = survey->step_count > 0 ? step_belief(p, survey) : 0;
@@ -142,7 +143,8 @@ static tip_width stress_step_width(const front_pass *p, const front_cell *c,
             tip_cell_step one = ilsai_tip_cell_step(d.value, nodes);
             double deeper = belief == 1 ? d.by_s * one.by_d : 0;
             sum.value += given * survey->step[m].height * one.volume;
-            sum.slope += given * survey->step[m].height * (one.by_ell + deeper);
+            sum.slopes.advance += given * survey->step[m].height * one.by_ell;
+            sum.slopes.past_steps[k] += given * survey->step[m].height * deeper;
         }
     }
     return sum;
@@ -154,12 +156,12 @@ static tip_width mean_width(const front_pass *p, const front_cell *c) {
     double area = p->g->dx * p->g->dy;
     tip_cell_nodes nodes = ilsai_tip_cell_nodes(&at);
     tip_cell_growth growth = ilsai_tip_cell_growth(p->widths.tip_material, V, K_I, &nodes);
-    tip_width w = {growth.volume / area, V > 0 ? growth.by_ell / area : growth.volume / area};
-    if (V > 0) {
-        w.slope += growth.by_log_V / (area * V * p->dt);
-    }
+    tip_width w = {.value = growth.volume / area, .slopes = {.advance = growth.volume / area}};
     tip_width added = stress_step_width(p, c, &nodes);
-    w.slope += V > 0 ? added.slope : 0;
+    if (V > 0) {
+        w.slopes = added.slopes;
+        w.slopes.advance += growth.by_ell / area + growth.by_log_V / (area * V * p->dt);
+    }
     w.value = fmax(w.value + added.value, ILSAI_STRESS_STEP_LEFT * w.value);
     return w;
 }
@@ -186,7 +188,7 @@ static void set_cell(tip_cells *t, const front_pass *p, const front_cell *c, boo
         tip_width w = mean_width(p, c);
         double most = is_cut_off(p, c) ? p->old->width[c->cell] : w.value;
         p->trial->width[c->cell] = fmin(w.value, most);
-        t->width_slope[k] = w.slope;
+        t->width_slopes[k] = w.slopes;
     }
     if (p->material->C_prime > 0) {
         leak_at_front(p, c, &t->paths.at[k]);
@@ -292,7 +294,7 @@ static void pack_paths(tip_paths *paths, const front_pass *p, const front_cell *
 
 /* Makes room for the cells of a march, the survey cells, and the paths with their images. */
 static ilsa_status reserve(tip_cells *t, const front_pass *p, int count) {
-    const grown_array arrays[] = {ILSAI_GROWN(t->sensitivities), ILSAI_GROWN(t->width_slope)};
+    const grown_array arrays[] = {ILSAI_GROWN(t->sensitivities), ILSAI_GROWN(t->width_slopes)};
     ILSAI_TRY(ilsai_grow((size_t)count + (size_t)p->survey_count, &t->capacity, arrays, 2));
     int images = count << (p->g->mirror_x + p->g->mirror_y);
     return p->material->C_prime > 0 ? ilsai_tip_paths_reserve(&t->paths, images) : ILSA_OK;

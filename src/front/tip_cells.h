@@ -35,13 +35,21 @@ typedef struct front_pass {
     thread_pool *threads; /* that share the loops, NULL: none */
 } front_pass;
 
+/*
+ * Derivatives of the width of a cell: by an advance of its front in the step, of a front at rest by
+ * the logarithm of its stress intensity; and by the distances of the survey cells that the front
+ * comes from, as these pass the steps of the stress that each of them sees.
+ */
+typedef struct width_slopes {
+    double advance;
+    double past_steps[FRONT_PARENTS];
+} width_slopes;
+
 /* What a pass has found, beside the fields of the trial; zero to begin with. */
 typedef struct tip_cells {
-    box footprint;   /* of the wet cells and their images */
-    tip_paths paths; /* through the wet cells that the march reached, in its order */
-    /* Per cell that the march reached: the derivative of its width by an advance of the front in
-     * the step; of a front at rest by the logarithm of its stress intensity. */
-    double *width_slope;
+    box footprint;              /* of the wet cells and their images */
+    tip_paths paths;            /* through the wet cells that the march reached, in its order */
+    width_slopes *width_slopes; /* per cell that the march reached */
     sensitivity *sensitivities; /* of the survey cells, then of the cells that the march reached */
     int sensitivity_count;
     size_t capacity;
