@@ -175,13 +175,12 @@ typedef struct ilsa_report {
 
 /*
  * Takes one step of exactly dt > 0 by backward Euler (4.4). A cell closes where its width would
- * fall below the closure width. A closed cell keeps that width, and its faces carry the part of the
- * closure stress that the fluid does not; it leaks the fluid that it had and then nothing; it opens
- * again when the pressure of the fluid exceeds the closure stress. The front before closed cells
- * rests. Any status other than ILSA_OK leaves the solver bit for bit as it was. report may be NULL;
- * it is written whenever the solver is not NULL.
- * ILSA_STEP_REJECTED, ILSA_STEP_TOO_LARGE, ILSA_MESH_EDGE, ILSA_CLOSED, ILSA_ERR_NULL,
- * ILSA_ERR_VALUE, ILSA_ERR_STATE, ILSA_ERR_MEMORY.
+ * fall below the closure width. A closed cell keeps a film of that width, which carries the closure
+ * stress and neither leaks nor flows out. The cell opens again when the pressure of the fluid
+ * beside it exceeds the closure stress. The front before closed cells rests. Any status other than
+ * ILSA_OK leaves the solver bit for bit as it was. report may be NULL; it is written whenever the
+ * solver is not NULL. ILSA_STEP_REJECTED, ILSA_STEP_TOO_LARGE, ILSA_MESH_EDGE, ILSA_CLOSED,
+ * ILSA_ERR_NULL, ILSA_ERR_VALUE, ILSA_ERR_STATE, ILSA_ERR_MEMORY.
  */
 ILSA_API ilsa_status ilsa_step(ilsa_solver *solver, double dt, ilsa_report *report);
 
@@ -251,8 +250,9 @@ ILSA_API ilsa_status ilsa_get_time(const ilsa_solver *solver, double *time);
  *
  * The width is 0 outside the footprint, and in a tip cell its mean over the whole cell, so that
  * widths times the area of a cell add up to the volume. The pressure is the total pressure of the
- * fluid, not the net one; in a closed cell it is that of the fluid between its faces, and outside
- * the footprint it is 0. The stress is the far-field stress that the solver uses.
+ * fluid, not the net one. In a closed cell it is the closure stress, which is the far-field stress
+ * and what the widths of all cells add to it there. Outside the footprint it is 0. The stress is
+ * the far-field stress that the solver uses.
  */
 ILSA_API ilsa_status ilsa_get_width(const ilsa_solver *solver, const double **width);
 ILSA_API ilsa_status ilsa_get_pressure(const ilsa_solver *solver, const double **pressure);
