@@ -161,7 +161,7 @@ typedef struct ilsa_report {
     double time;              /* of the fracture, at the end */
     double dt;                /* of the last accepted step */
     long steps;               /* accepted */
-    long rejected;            /* tried and not accepted */
+    long rejected;            /* tried and not accepted; ILSA_CLOSED tries nothing */
     long front_iterations;    /* passes of the front loop; this and the next three count those of
                                  rejected steps too */
     long newton_iterations;   /* linear systems solved */

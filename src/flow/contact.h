@@ -57,11 +57,27 @@ static inline double ilsai_contact_openness(double width, double least, double c
 }
 
 /*
+ * What numbered cell k gains by the flow if it is open, before the flow is restrained: other cells
+ * give what their openness lets out.
+ */
+double ilsai_contact_gain(const lubrication *l, const unknowns *cells, const double *openness,
+                          int k);
+
+/*
+ * The flow into a cell that opens is large for its width until the pressures on both sides have
+ * met. Where the derivative by the width exceeds this part of what elasticity and storage answer
+ * with, it would turn Newton's step around.
+ */
+#define CONTACT_CALM 0.5
+
+/* Takes the flow of numbered cell k not to depend on its width where that is so. self is the entry
+ * of the elasticity between the cell and itself. */
+void ilsai_contact_calm(lubrication *l, const unknowns *cells, int k, double self);
+
+/*
  * Multiplies what flows out of every numbered cell by its openness; slope is the derivative of that
  * by the width. Both are per numbered cell. No fluid passes to or from a cell whose unknown is
- * UNKNOWN_NONE. The flow into a cell of openness 0 is taken not to depend on the widths: it is
- * large for the width until the pressures on both sides have met, and its derivative would turn
- * Newton's step around.
+ * UNKNOWN_NONE.
  */
 void ilsai_contact_restrain(lubrication *l, const unknowns *cells, const double *openness,
                             const double *slope);

@@ -125,6 +125,11 @@ void ilsai_coupled_pressure(coupled *c, const coupled_problem *problem, coupled_
 /* ---- Closed cells, and tip cells at a bound of their pressure ---------------------------------
  */
 
+/* The width up to which a cell carries no weight for the others. */
+static double nearly_closed(const coupled_problem *problem) {
+    return ILSAI_NEARLY_CLOSED * problem->contact.closure_width;
+}
+
 /* What leaks in the step from numbered cell k at the full rate, per area. */
 static double full_leakoff(const coupled *c, const coupled_problem *problem, int k) {
     const double *leakoff = problem->contact.leakoff;
@@ -214,6 +219,42 @@ static void set_states(coupled *c, const coupled_problem *problem) {
     }
 }
 
+/*
+ * Opens the closed and draining cells that gain fluid even if they let out and leak in full: the
+ * width that they find lies beyond that at which they drain. All of them are found before any is
+ * opened, so that their order does not count.
+ */
+static void open_cells(coupled *c, const coupled_problem *problem) {
+    for (int k = 0; k < c->cells.count; k++) {
+        int cell = c->cells.cell[k];
+        if (c->openness[k] < 1) {
+            double gain = ilsai_contact_gain(&c->lubrication, &c->cells, c->openness, k) +
+                          problem->source_term[cell] + c->source_change[k];
+            bool opens = gain > problem->width[cell] - problem->width_old[cell];
+            c->openness_slope[k] *= !opens;
+        }
+    }
+    for (int k = 0; k < c->cells.count; k++) {
+        if (c->openness[k] < 1 && c->openness_slope[k] == 0) {
+            c->openness[k] = 1;
+            c->closed--;
+            set_retained(problem, c->cells.cell[k], 0);
+        }
+    }
+}
+
+/* Lets no cell that is nearly closed turn Newton's step around. */
+static void calm_cells(coupled *c, const coupled_problem *problem) {
+    for (int k = 0; k < c->cells.count; k++) {
+        int cell = c->cells.cell[k], nx = problem->g->nx;
+        if (c->cells.unknown[k] == UNKNOWN_WIDTH &&
+            problem->width[cell] <= nearly_closed(problem)) {
+            double self = ilsai_elasticity_self_entry(problem->elastic, cell % nx, cell / nx);
+            ilsai_contact_calm(&c->lubrication, &c->cells, k, self);
+        }
+    }
+}
+
 /* Holds back what flows out of cells that are closed or drain, and what leaks from them. */
 static void restrain(coupled *c, const coupled_problem *problem) {
     ilsai_contact_restrain(&c->lubrication, &c->cells, c->openness, c->openness_slope);
@@ -249,6 +290,10 @@ static void set_rhs(coupled *c, const coupled_problem *problem) {
                         .threads = problem->threads};
     problem->fluid->set_fluxes(&c->lubrication, &state);
     c->lubrication.restrained = false;
+    if (problem->contact.state) {
+        open_cells(c, problem);
+        calm_cells(c, problem);
+    }
     if (c->closed > 0 || c->unreached > 0) {
         restrain(c, problem);
     }
@@ -264,11 +309,6 @@ static ilsa_status solve_iterative(coupled *c, coupled_counts *counts) {
     counts->krylov += result.iterations;
     c->residual = result.residual;
     return result.converged ? ILSA_OK : ILSA_STEP_REJECTED;
-}
-
-/* The width up to which a cell carries no weight for the others. */
-static double nearly_closed(const coupled_problem *problem) {
-    return ILSAI_NEARLY_CLOSED * problem->contact.closure_width;
 }
 
 /*
