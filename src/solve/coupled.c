@@ -243,14 +243,19 @@ static void open_cells(coupled *c, const coupled_problem *problem) {
     }
 }
 
-/* Lets no cell that is nearly closed turn Newton's step around. */
+/*
+ * Lets no cell that is nearly closed, and no tip cell at a bound of its pressure, turn Newton's
+ * step around. Elasticity does not answer to the width of the latter.
+ */
 static void calm_cells(coupled *c, const coupled_problem *problem) {
     for (int k = 0; k < c->cells.count; k++) {
         int cell = c->cells.cell[k], nx = problem->g->nx;
-        if (c->cells.unknown[k] == UNKNOWN_WIDTH &&
-            problem->width[cell] <= nearly_closed(problem)) {
+        bool fills = c->cells.unknown[k] == UNKNOWN_FILL;
+        bool nearly =
+            c->cells.unknown[k] == UNKNOWN_WIDTH && problem->width[cell] <= nearly_closed(problem);
+        if (nearly || fills) {
             double self = ilsai_elasticity_self_entry(problem->elastic, cell % nx, cell / nx);
-            ilsai_contact_calm(&c->lubrication, &c->cells, k, self);
+            ilsai_contact_calm(&c->lubrication, &c->cells, k, fills ? 0 : self);
         }
     }
 }
