@@ -266,9 +266,17 @@ ILSA_API ilsa_status ilsa_get_trigger_time(const ilsa_solver *solver, const doub
 
 /*
  * The kinds of a cell. The front crosses a tip cell; channel cells are full, and a survey cell is a
- * channel cell with a tip cell or the edge of the footprint beside it.
+ * channel cell with a tip cell or the edge of the footprint beside it. A channel cell whose faces
+ * touch is closed, beside a tip cell too: its width is the closure width, and its pressure is the
+ * closure stress, see ilsa_get_pressure.
  */
-enum { ILSA_CELL_EMPTY = 0, ILSA_CELL_TIP = 1, ILSA_CELL_SURVEY = 2, ILSA_CELL_CHANNEL = 3 };
+enum {
+    ILSA_CELL_EMPTY = 0,
+    ILSA_CELL_TIP = 1,
+    ILSA_CELL_SURVEY = 2,
+    ILSA_CELL_CHANNEL = 3,
+    ILSA_CELL_CLOSED = 4
+};
 
 /* The kind of each of the nx * ny cells; read as the fields are. */
 ILSA_API ilsa_status ilsa_get_cell_kinds(const ilsa_solver *solver, const unsigned char **kind);
@@ -314,7 +322,7 @@ typedef struct ilsa_summary {
     double efficiency;                                  /* volume_fracture / volume_injected */
     double V_max;                                       /* fastest point of the front */
     int cells, tip_cells, survey_cells, arrested_cells; /* survey cells at rest: V = 0 */
-    int closed_cells;     /* survey and channel cells whose faces touch */
+    int closed_cells;     /* survey and channel cells whose faces touch: ILSA_CELL_CLOSED */
     double closure_width; /* the width that closed cells keep */
     int unknowns;         /* of the last step: after symmetry */
     ilsa_report total;    /* since the start; seconds, steps and iterations summed */
