@@ -52,6 +52,12 @@
 #define ILSAI_NEWTON_RESIDUAL  6.0
 /* A Newton step may take away this part of a width. */
 #define ILSAI_WIDTH_DROP 0.9
+/* From this iteration on a Newton step that leaves more volume unaccounted for than there was is
+ * cut by this factor, so many times at most: cells that close and open far apart in width send it
+ * to and fro. */
+#define ILSAI_NEWTON_GUARDED 6
+#define ILSAI_NEWTON_CUT     0.25
+#define ILSAI_NEWTON_CUTS    8
 /* A coupled solve is given up after so many iterations in which no cell closed or opened, or after
  * so many in all. */
 #define ILSAI_NEWTON_MAX  25

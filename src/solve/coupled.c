@@ -9,6 +9,18 @@
 #include <math.h>
 #include <stdbool.h>
 
+/* The numbers that a Newton step changes in a cell, and what its unknown is. */
+enum {
+    KEPT_WIDTH,
+    KEPT_PRESSURE,
+    KEPT_SOURCE,
+    KEPT_LIFT,
+    KEPT_GIVEN,
+    KEPT_FILL,
+    KEPT_UNKNOWN,
+    KEPT
+};
+
 struct coupled {
     unknowns cells;
     lubrication lubrication;
@@ -20,10 +32,11 @@ struct coupled {
     double *source_change, *pressure_change;
     double *given_width; /* of a channel cell: the least width; of a tip cell: the asymptote's */
     double *openness, *openness_slope; /* see flow/contact.h */
-    size_t capacity;                   /* numbered cells that the arrays over them have room for */
-    int closed;                        /* channel cells that are closed or drain */
-    int bounded;                       /* tip cells whose pressure is at a bound */
-    int unreached;                     /* tip cells that no fluid reaches */
+    double *kept;    /* KEPT per numbered cell: what it was before the last Newton step */
+    size_t capacity; /* numbered cells that the arrays over them have room for */
+    int closed;      /* channel cells that are closed or drain */
+    int bounded;     /* tip cells whose pressure is at a bound */
+    int unreached;   /* tip cells that no fluid reaches */
     bool settled;    /* whether the last solve has ended with sensitivities that hold */
     double residual; /* of the last linear solve, relative */
 };
@@ -57,6 +70,7 @@ void ilsai_coupled_destroy(coupled **c) {
         ilsai_release((*c)->given_width);
         ilsai_release((*c)->openness);
         ilsai_release((*c)->openness_slope);
+        ilsai_release((*c)->kept);
         ilsai_release(*c);
         *c = NULL;
     }
@@ -78,6 +92,7 @@ static ilsa_status reserve(coupled *c, int count) {
                                   ILSAI_GROWN(c->given_width),
                                   ILSAI_GROWN(c->openness),
                                   ILSAI_GROWN(c->openness_slope),
+                                  {&c->kept, KEPT * sizeof *c->kept},
                                   ILSAI_GROWN(c->matrix.fill),
                                   ILSAI_GROWN(c->matrix.leakoff_by_fill),
                                   ILSAI_GROWN(c->matrix.self_correction),
@@ -435,6 +450,61 @@ static ilsa_status solve_linear(coupled *c, bool dense, bool changed, coupled_co
                  : solve_iterative(c, counts);
 }
 
+/* Keeps what a Newton step is about to change. */
+static void keep(const coupled *c, const coupled_problem *problem) {
+    for (int k = 0; k < c->cells.count; k++) {
+        double *kept = c->kept + (size_t)KEPT * (size_t)k;
+        kept[KEPT_WIDTH] = problem->width[c->cells.cell[k]];
+        kept[KEPT_PRESSURE] = problem->pressure[c->cells.cell[k]];
+        kept[KEPT_SOURCE] = c->source_change[k];
+        kept[KEPT_LIFT] = c->pressure_change[k];
+        kept[KEPT_GIVEN] = c->given_width[k];
+        kept[KEPT_FILL] = c->matrix.fill[k];
+        kept[KEPT_UNKNOWN] = c->cells.unknown[k];
+    }
+}
+
+static void put_back(const coupled *c, const coupled_problem *problem) {
+    for (int k = 0; k < c->cells.count; k++) {
+        const double *kept = c->kept + (size_t)KEPT * (size_t)k;
+        problem->width[c->cells.cell[k]] = kept[KEPT_WIDTH];
+        problem->pressure[c->cells.cell[k]] = kept[KEPT_PRESSURE];
+        c->source_change[k] = kept[KEPT_SOURCE];
+        c->pressure_change[k] = kept[KEPT_LIFT];
+        c->given_width[k] = kept[KEPT_GIVEN];
+        c->matrix.fill[k] = kept[KEPT_FILL];
+        c->cells.unknown[k] = (unsigned char)kept[KEPT_UNKNOWN];
+    }
+}
+
+/* Sets states, pressures, fluxes and balances for the widths as they are. Returns the volume that
+ * is unaccounted for, over the area of a cell. */
+static double evaluate(coupled *c, const coupled_problem *problem, coupled_counts *counts) {
+    double sum = 0;
+    set_states(c, problem);
+    ilsai_coupled_pressure(c, problem, counts);
+    set_rhs(c, problem);
+    for (int k = 0; k < c->cells.count; k++) {
+        sum += fabs(c->rhs[k]);
+    }
+    return sum;
+}
+
+/* Cuts the last Newton step, of this length, until no more is unaccounted for than was before it,
+ * `least`. Returns what is unaccounted for at the end. */
+static double cut_step(coupled *c, const coupled_problem *problem, double length, double least,
+                       progress *made, coupled_counts *counts) {
+    double now = evaluate(c, problem, counts);
+    for (int cut = 0; cut < ILSAI_NEWTON_CUTS && now > least; cut++) {
+        length *= ILSAI_NEWTON_CUT;
+        put_back(c, problem);
+        set_states(c, problem);
+        *made = take_step(c, problem, length);
+        now = evaluate(c, problem, counts);
+    }
+    return now;
+}
+
 /*
  * Newton's method, which is semi-smooth where cells close or open: it ends with an iteration in
  * which none has.
@@ -443,13 +513,16 @@ static ilsa_status newton(coupled *c, const coupled_problem *problem, coupled_co
     bool dense = choose_dense(c, problem);
     int left = ILSAI_NEWTON_MAX;
     progress made = {0, 1, true};
+    double length = 1, unaccounted = INFINITY;
     c->residual = 0;
     for (int k = 0; k < ILSAI_CONTACT_MAX && left > 0; k++) {
-        set_states(c, problem);
-        ilsai_coupled_pressure(c, problem, counts);
-        set_rhs(c, problem);
+        double least = k > ILSAI_NEWTON_GUARDED ? unaccounted : INFINITY;
+        unaccounted = cut_step(c, problem, length, least, &made, counts);
+        if (k >= ILSAI_NEWTON_GUARDED) {
+            keep(c, problem);
+        }
         ILSAI_TRY(solve_linear(c, dense, made.switched > 0 || c->bounded > 0, counts));
-        double length = step_length(c, problem);
+        length = step_length(c, problem);
         made = take_step(c, problem, length);
         if (isnan(made.change)) {
             return ILSA_STEP_REJECTED;
