@@ -105,7 +105,9 @@ static void a_penny_shut_in_closes(void **state) {
         const unsigned char *kind = host_kind(solver);
         for (size_t c = 0; c < cells; c++) {
             int channel = kind[c] >= ILSA_CELL_SURVEY;
-            assert_true(width[c] <= before[c] * (1 + 1e-12));
+            /* A tip cell that had run short fills up when the leak-off around it ends. */
+            double filled = channel ? 0 : 1e-2 * now.closure_width;
+            assert_true(width[c] <= before[c] * (1 + 1e-12) + filled);
             assert_true(!channel || width[c] >= now.closure_width * (1 - 1e-12));
             assert_true(isfinite(host_pressure(solver)[c]));
         }
@@ -183,9 +185,18 @@ static double closure_stress(const ilsa_solver *solver, const host_scene *scene,
     return sum * scene->material.E_prime;
 }
 
+/* Whether a cell that no longer says so is a survey cell. */
+static int beside_tip(const ilsa_solver *solver, int cell) {
+    ilsa_mesh_def m;
+    assert_int_equal(ilsa_get_mesh_def(solver, &m), ILSA_OK);
+    const unsigned char *kind = host_kind(solver) + cell;
+    return kind[-1] < ILSA_CELL_SURVEY || kind[1] < ILSA_CELL_SURVEY ||
+           kind[-m.nx] < ILSA_CELL_SURVEY || kind[m.nx] < ILSA_CELL_SURVEY;
+}
+
 /*
- * In open cells behind the survey cells the fluid carries the closure stress, in closed ones no
- * more than that; and there are both.
+ * Behind the survey cells the fluid carries the closure stress, in open cells and in the film of
+ * closed ones; and there are both.
  */
 static void closed_faces_press_on_each_other(void **state) {
     (void)state;
@@ -194,18 +205,16 @@ static void closed_faces_press_on_each_other(void **state) {
     double closure = host_summary(solver).closure_width, largest = 0;
     int open = 0, closed = 0;
     for (int cell = 0; cell < scene.mesh.nx * scene.mesh.ny; cell++) {
-        if (host_kind(solver)[cell] != ILSA_CELL_CHANNEL) {
+        int kind = host_kind(solver)[cell];
+        if (kind != ILSA_CELL_CHANNEL && (kind != ILSA_CELL_CLOSED || beside_tip(solver, cell))) {
             continue;
         }
         double stress = closure_stress(solver, &scene, cell), p = host_pressure(solver)[cell];
         largest = larger_of(largest, fabs(stress));
-        if (host_width(solver)[cell] > 1.001 * closure) {
-            open++;
-            assert_true(fabs(p - stress) < 1e-3 * largest);
-        } else {
-            closed++;
-            assert_true(p < stress + 1e-3 * largest);
-        }
+        open += kind == ILSA_CELL_CHANNEL;
+        closed += kind == ILSA_CELL_CLOSED;
+        assert_true((host_width(solver)[cell] > 1.001 * closure) == (kind == ILSA_CELL_CHANNEL));
+        assert_true(fabs(p - stress) < 1e-3 * largest);
     }
     assert_true(open > 20 && closed > 20);
     ilsa_solver_destroy(&solver);
@@ -407,6 +416,68 @@ static void a_fracture_in_its_barriers_closes_there(void **state) {
     ilsa_solver_destroy(&solver);
 }
 
+/* ---- In the field ------------------------------------------------------------------------------
+ */
+
+/* A layer of 40 m between barriers, pumped with linear gel. */
+static host_scene gel_in_a_layer(int nx, int ny, double h) {
+    const ilsa_rock rock = {.E = 30e9, .nu = 0.25, .mu = 0.03, .K_Ic = 1.5e6, .C_L = 3e-5};
+    host_scene scene = host_three_layers(nx, ny);
+    assert_int_equal(ilsa_material_def_from_rock(&rock, &scene.material), ILSA_OK);
+    scene.mesh.dx = scene.mesh.dy = h;
+    scene.interface_y[0] = -20;
+    scene.interface_y[1] = 20;
+    scene.sigma[0] = scene.sigma[2] = 45e6;
+    scene.sigma[1] = 40e6;
+    scene.source[0].rate = 0.06;
+    return scene;
+}
+
+/*
+ * An hour and more of closing: no pressure is far from the stresses and what the fluid once had
+ * over them, in the tip cells neither, and the fluid of closed cells carries the closure stress.
+ */
+static void pressures_stay_those_of_rock_after_shut_in(void **state) {
+    (void)state;
+    host_scene scene = gel_in_a_layer(81, 31, 4);
+    ilsa_solver *solver = host_started(&scene, 12);
+    assert_int_equal(ilsa_advance(solver, 600, NULL), ILSA_OK);
+    assert_int_equal(ilsa_set_rate(solver, 0, 0), ILSA_OK);
+    double least = INFINITY, most = -INFINITY;
+    while (host_summary(solver).time < 5000) {
+        ilsa_status status = ilsa_advance_one(solver, 5000, NULL);
+        if (status == ILSA_CLOSED) {
+            break;
+        }
+        assert_int_equal(status, ILSA_OK);
+        for (int cell = 0; cell < scene.mesh.nx * scene.mesh.ny; cell++) {
+            if (host_kind(solver)[cell] != ILSA_CELL_EMPTY) {
+                least = fmin(least, host_pressure(solver)[cell]);
+                most = fmax(most, host_pressure(solver)[cell]);
+            }
+        }
+    }
+    ilsa_summary now = host_summary(solver);
+    int closed = 0;
+    for (int cell = 0; cell < scene.mesh.nx * scene.mesh.ny; cell++) {
+        if (host_kind(solver)[cell] == ILSA_CELL_CLOSED) {
+            double stress = scene.sigma[1] + closure_stress(solver, &scene, cell);
+            int j = cell / scene.mesh.nx - scene.mesh.ny / 2;
+            closed++;
+            assert_true(abs(j) > 4 || beside_tip(solver, cell) ||
+                        relative(host_pressure(solver)[cell], stress) < 1e-3);
+        }
+    }
+    assert_int_equal(closed, now.closed_cells);
+    print_message("contact: pressures after shut-in %.3g to %.3g MPa, %d closed, %ld steps, %ld "
+                  "refused\n",
+                  1e-6 * least, 1e-6 * most, closed, now.total.steps, now.total.rejected);
+    assert_true(closed > 100 && least > -100e6 && most < 100e6);
+    assert_true(now.total.rejected <= 0.05 * (double)now.total.steps);
+    assert_true(fabs(host_imbalance(solver)) <= 1e-12);
+    ilsa_solver_destroy(&solver);
+}
+
 /* ---- Again and again ----------------------------------------------------------------------------
  */
 
@@ -441,6 +512,7 @@ int main(void) {
         cmocka_unit_test(a_host_sets_the_closure_width),
         cmocka_unit_test(rising_stress_closes_and_falling_opens),
         cmocka_unit_test(a_fracture_in_its_barriers_closes_there),
+        cmocka_unit_test(pressures_stay_those_of_rock_after_shut_in),
         cmocka_unit_test(pumping_in_strokes_loses_nothing),
     };
     return cmocka_run_group_tests_name("contact", tests, NULL, NULL);

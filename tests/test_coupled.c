@@ -240,6 +240,11 @@ static void make_matrix(scene *s, matrix *at) {
     at->m.pressure = zeros(s->cells);
     at->m.sensitivity = s->sensitivity;
     at->m.self_correction = zeros((size_t)at->a.count);
+    at->m.leakoff_by_fill = zeros((size_t)at->a.count);
+    at->m.fill = zeros((size_t)at->a.count);
+    for (int k = 0; k < at->a.count; k++) {
+        at->m.fill[k] = 1;
+    }
     at->m.sensitivity_of = malloc((size_t)at->a.count * sizeof *at->m.sensitivity_of);
     assert_non_null(at->m.sensitivity_of);
     for (int k = 0; k < at->a.count; k++) {
@@ -393,15 +398,27 @@ static void matrix_with_responses_is_the_derivative(void **state) {
     assert_below(dense, 1e-10);
 }
 
-/* Every fifth channel cell closed, every seventh draining. */
+/*
+ * Every fifth channel cell closed, every seventh draining; of the tip cells a third that no fluid
+ * reaches, a third at a bound of their pressure.
+ */
 static void close_some(matrix *at) {
-    for (int k = 0; k < at->a.count; k++) {
-        if (at->a.unknown[k] == UNKNOWN_WIDTH) {
-            at->a.unknown[k] = k % 5 == 0   ? UNKNOWN_CONTACT
-                               : k % 7 == 0 ? UNKNOWN_RETAINED
-                                            : UNKNOWN_WIDTH;
+    int count = at->a.count;
+    double *openness = zeros((size_t)count), *slope = zeros((size_t)count);
+    for (int k = 0; k < count; k++) {
+        openness[k] = 1;
+        if (at->a.unknown[k] == UNKNOWN_WIDTH && (k % 5 == 0 || k % 7 == 0)) {
+            openness[k] = k % 5 == 0 ? 0 : 0.3;
+            slope[k] = 1e5;
+        } else if (at->a.unknown[k] == UNKNOWN_PRESSURE && k % 3 != 0) {
+            at->a.unknown[k] = k % 3 == 1 ? UNKNOWN_NONE : UNKNOWN_FILL;
+            at->m.fill[k] = k % 3 == 1 ? 1 : 0.4;
+            at->m.leakoff_by_fill[k] = k % 3 == 1 ? 0 : 0.7;
         }
     }
+    ilsai_contact_restrain(&at->f, &at->a, openness, slope);
+    free(openness);
+    free(slope);
 }
 
 /* With closed cells the product, the full matrix and the preconditioner are of one system. */
@@ -437,7 +454,8 @@ static void closed_cells_are_in_matrix_and_preconditioner(void **state) {
     }
     print_message("Newton matrix with closed cells: dense off by %.2g, at most %d iterations\n",
                   worst, most);
-    assert_below(worst, 1e-9);
+    /* Tip cells among others that no fluid reaches hang on a soft spring: 1.3e-7 measured. */
+    assert_below(worst, 1e-6);
 }
 
 /* Widths of cells at random are products that a wrong neighbour or image would not survive. */

@@ -1,6 +1,6 @@
 /*
- * Scenes as a completions engineer would set them, while they are pumped: thin pays between strong
- * barriers, weak layers behind a barrier. Each has once ended in "no progress".
+ * Scenes as a completions engineer would set them: thin pays between strong barriers, weak layers
+ * behind a barrier, layers that are shut in. Each has once ended in "no progress" or stuttered.
  */
 #include "check.h"
 #include "host.h"
@@ -85,11 +85,71 @@ static void front_breaks_into_a_weaker_layer(void **state) {
     assert_true(fabs(end.extent_y_max - 34.8) < 1);
 }
 
+/* ---- After the pumps have stopped ---------------------------------------------------------------
+ */
+
+/* Linear gel in a layer of 80 m between barriers of many net pressures. */
+static host_scene shut_in_layer(void) {
+    ilsa_rock rock = {.E = 7.325e9, .nu = 0.287, .mu = 0.02742, .K_Ic = 1.114e6, .C_L = 3.8e-6};
+    host_scene scene = field_scene(201, 51, &rock, 0.02937);
+    scene.mesh.dx = scene.mesh.dy = 4;
+    scene.interfaces = 2;
+    scene.interface_y[0] = -54.53;
+    scene.interface_y[1] = 25.14;
+    scene.sigma[0] = 16.28e6;
+    scene.sigma[1] = 9.305e6;
+    scene.sigma[2] = 15.09e6;
+    return scene;
+}
+
+/* The least and the largest pressure anywhere in the fracture, once no pump runs. */
+typedef struct pressures {
+    double least, most;
+} pressures;
+
+static pressures watched_after_shut_in(ilsa_solver *solver, double t_end) {
+    pressures seen = {INFINITY, -INFINITY};
+    ilsa_mesh_def m;
+    assert_int_equal(ilsa_get_mesh_def(solver, &m), ILSA_OK);
+    while (host_summary(solver).time < t_end) {
+        ilsa_status status = ilsa_advance_one(solver, t_end, NULL);
+        if (status == ILSA_CLOSED) {
+            break;
+        }
+        assert_int_equal(status, ILSA_OK);
+        for (int cell = 0; cell < m.nx * m.ny; cell++) {
+            if (host_kind(solver)[cell] != ILSA_CELL_EMPTY) {
+                seen.least = fmin(seen.least, host_pressure(solver)[cell]);
+                seen.most = fmax(seen.most, host_pressure(solver)[cell]);
+            }
+        }
+    }
+    return seen;
+}
+
+/* Cells at the barriers closed and opened in turn, a tenth of all attempts was refused. */
+static void a_layer_shut_in_closes_without_stuttering(void **state) {
+    (void)state;
+    host_scene scene = shut_in_layer();
+    ilsa_solver *solver = host_started(&scene, 14.05);
+    assert_int_equal(ilsa_advance(solver, 2260, NULL), ILSA_OK);
+    assert_int_equal(ilsa_set_rate(solver, 0, 0), ILSA_OK);
+    pressures seen = watched_after_shut_in(solver, 8790);
+    ilsa_summary end = host_summary(solver);
+    print_message("field: after shut-in %.3g .. %.3g MPa, %ld steps, %ld refused\n",
+                  1e-6 * seen.least, 1e-6 * seen.most, end.total.steps, end.total.rejected);
+    assert_true(seen.least > -100e6 && seen.most < 100e6);
+    assert_true(end.total.rejected <= 0.05 * (double)end.total.steps);
+    assert_below(fabs(host_imbalance(solver)), 1e-12);
+    ilsa_solver_destroy(&solver);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(thin_pay_is_pumped_to_its_end),
         cmocka_unit_test(thin_pay_does_not_depend_on_its_start),
         cmocka_unit_test(front_breaks_into_a_weaker_layer),
+        cmocka_unit_test(a_layer_shut_in_closes_without_stuttering),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

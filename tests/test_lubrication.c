@@ -1,6 +1,7 @@
 /* The numbered cells and the lubrication operator on them, against Poiseuille's law. */
 #include "check.h"
 #include "failing.h"
+#include "flow/contact.h"
 #include "flow/newtonian.h"
 #include <ilsa/solver.h>
 
@@ -429,6 +430,89 @@ static void no_memory_is_reported(void **state) {
     free_scene(&s);
 }
 
+/* Contact */
+
+/* The restrained inflow of every numbered cell, where each has an openness. */
+static void restrain(scene *s, const double *openness, double *inflow) {
+    double slope[400];
+    for (int k = 0; k < s->a.count; k++) {
+        slope[k] = openness[k] < 1;
+    }
+    set_fluxes(s);
+    ilsai_contact_restrain(&s->f, &s->a, openness, slope);
+    for (int k = 0; k < s->a.count; k++) {
+        inflow[k] = ilsai_lubrication_inflow(&s->f, k);
+    }
+}
+
+/* Every third cell closed, every seventh draining; none of their volume is lost. */
+static void closed_cells_take_fluid_in_and_give_none(void **state) {
+    (void)state;
+    double openness[400], inflow[400], moved[400], sum = 0, size = 0, worst = NOTHING_YET;
+    scene s = make_scene(12, 10, 0, 0);
+    fill(&s, 0, 13);
+    work_out(&s);
+    assert_true(s.a.count < 400);
+    for (int k = 0; k < s.a.count; k++) {
+        openness[k] = k % 3 == 0 ? 0 : k % 7 == 0 ? 0.3 : 1;
+    }
+    restrain(&s, openness, inflow);
+    for (int k = 0; k < s.a.count; k++) {
+        sum += inflow[k];
+        size += fabs(inflow[k]);
+        for (int face = 0; face < GRID_FACES; face++) {
+            assert_true(openness[k] > 0 || s.f.flux[GRID_FACES * k + face] >= 0);
+        }
+    }
+    assert_below(fabs(sum) / size, 1e-15);
+    for (int k = 0; k < s.a.count; k++) {
+        if (openness[k] == 1) {
+            continue;
+        }
+        openness[k] += 0.5;
+        restrain(&s, openness, moved);
+        openness[k] -= 0.5;
+        restrain(&s, openness, inflow);
+        worst = worst_of(worst, fabs((moved[k] - inflow[k]) / 0.5 - s.f.by_own_width[k]));
+        for (int face = 0; face < GRID_FACES; face++) {
+            int other = s.a.neighbour[GRID_FACES * k + face];
+            for (int back = 0; other >= 0 && back < GRID_FACES; back++) {
+                int at = GRID_FACES * other + back;
+                double change = (moved[other] - inflow[other]) / 0.5;
+                worst = s.a.neighbour[at] != k
+                            ? worst
+                            : worst_of(worst, fabs(change - s.f.by_width_across[at]));
+            }
+        }
+    }
+    print_message("contact: derivatives by the openness off by %.2g\n", worst);
+    assert_below(worst, 1e-12);
+    free_scene(&s);
+}
+
+/* A cell of no width between wide ones, sucked at: the derivative would turn Newton's step. */
+static void flow_into_an_opening_cell_is_calm(void **state) {
+    (void)state;
+    scene s = make_scene(12, 10, 0, 0);
+    fill(&s, 0, 13);
+    work_out(&s);
+    int k = s.a.count / 2, calm = 0;
+    s.width[s.a.cell[k]] = s.width_old[s.a.cell[k]] = 0;
+    s.pressure[s.a.cell[k]] = -1e6;
+    for (int turn = 0; turn < 2; turn++) {
+        double kept = 0, self = turn ? 1e12 : 0;
+        set_fluxes(&s);
+        ilsai_contact_calm(&s.f, &s.a, k, self);
+        for (int face = 0; face < GRID_FACES; face++) {
+            kept += fabs(s.f.by_width[GRID_FACES * k + face]);
+        }
+        calm += turn ? kept > 0 : kept == 0;
+        assert_true(ilsai_lubrication_inflow(&s.f, k) > 0);
+    }
+    assert_int_equal(calm, 2);
+    free_scene(&s);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(active_cells_are_the_representatives_that_are_not_empty),
@@ -444,6 +528,8 @@ int main(void) {
         cmocka_unit_test(slope_is_the_derivative),
         cmocka_unit_test(folded_gain_is_the_unfolded_one),
         cmocka_unit_test(no_memory_is_reported),
+        cmocka_unit_test(closed_cells_take_fluid_in_and_give_none),
+        cmocka_unit_test(flow_into_an_opening_cell_is_calm),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -73,8 +73,8 @@ int fields_write_vti(const fields *f, const char *directory, int number) {
     FILE *s = file.stream;
     fprintf(s,
             "<?xml version=\"1.0\"?>\n"
-            "<!-- cell_kind: 0 outside, 1 tip, 2 survey, 3 channel; trigger_time: NaN where the "
-            "front has not been -->\n"
+            "<!-- cell_kind: 0 outside, 1 tip, 2 survey, 3 channel, 4 closed; trigger_time: NaN "
+            "where the front has not been -->\n"
             "<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"%s\" "
             "header_type=\"UInt64\">\n"
             "<ImageData WholeExtent=\"0 %d 0 %d 0 0\" Origin=\"%.17g %.17g 0\" "

@@ -161,7 +161,7 @@ typedef struct ilsa_report {
     double time;              /* of the fracture, at the end */
     double dt;                /* of the last accepted step */
     long steps;               /* accepted */
-    long rejected;            /* tried and not accepted */
+    long rejected;            /* tried and not accepted; ILSA_CLOSED tries nothing */
     long front_iterations;    /* passes of the front loop; this and the next three count those of
                                  rejected steps too */
     long newton_iterations;   /* linear systems solved */
@@ -175,13 +175,12 @@ typedef struct ilsa_report {
 
 /*
  * Takes one step of exactly dt > 0 by backward Euler (4.4). A cell closes where its width would
- * fall below the closure width. A closed cell keeps that width, and its faces carry the part of the
- * closure stress that the fluid does not; it leaks the fluid that it had and then nothing; it opens
- * again when the pressure of the fluid exceeds the closure stress. The front before closed cells
- * rests. Any status other than ILSA_OK leaves the solver bit for bit as it was. report may be NULL;
- * it is written whenever the solver is not NULL.
- * ILSA_STEP_REJECTED, ILSA_STEP_TOO_LARGE, ILSA_MESH_EDGE, ILSA_CLOSED, ILSA_ERR_NULL,
- * ILSA_ERR_VALUE, ILSA_ERR_STATE, ILSA_ERR_MEMORY.
+ * fall below the closure width. A closed cell keeps a film of that width, which carries the closure
+ * stress and neither leaks nor flows out. The cell opens again when the pressure of the fluid
+ * beside it exceeds the closure stress. The front before closed cells rests. Any status other than
+ * ILSA_OK leaves the solver bit for bit as it was. report may be NULL; it is written whenever the
+ * solver is not NULL. ILSA_STEP_REJECTED, ILSA_STEP_TOO_LARGE, ILSA_MESH_EDGE, ILSA_CLOSED,
+ * ILSA_ERR_NULL, ILSA_ERR_VALUE, ILSA_ERR_STATE, ILSA_ERR_MEMORY.
  */
 ILSA_API ilsa_status ilsa_step(ilsa_solver *solver, double dt, ilsa_report *report);
 
@@ -251,8 +250,9 @@ ILSA_API ilsa_status ilsa_get_time(const ilsa_solver *solver, double *time);
  *
  * The width is 0 outside the footprint, and in a tip cell its mean over the whole cell, so that
  * widths times the area of a cell add up to the volume. The pressure is the total pressure of the
- * fluid, not the net one; in a closed cell it is that of the fluid between its faces, and outside
- * the footprint it is 0. The stress is the far-field stress that the solver uses.
+ * fluid, not the net one. In a closed cell it is the closure stress, which is the far-field stress
+ * and what the widths of all cells add to it there. Outside the footprint it is 0. The stress is
+ * the far-field stress that the solver uses.
  */
 ILSA_API ilsa_status ilsa_get_width(const ilsa_solver *solver, const double **width);
 ILSA_API ilsa_status ilsa_get_pressure(const ilsa_solver *solver, const double **pressure);
@@ -266,9 +266,17 @@ ILSA_API ilsa_status ilsa_get_trigger_time(const ilsa_solver *solver, const doub
 
 /*
  * The kinds of a cell. The front crosses a tip cell; channel cells are full, and a survey cell is a
- * channel cell with a tip cell or the edge of the footprint beside it.
+ * channel cell with a tip cell or the edge of the footprint beside it. A channel cell whose faces
+ * touch is closed, beside a tip cell too: its width is the closure width, and its pressure is the
+ * closure stress, see ilsa_get_pressure.
  */
-enum { ILSA_CELL_EMPTY = 0, ILSA_CELL_TIP = 1, ILSA_CELL_SURVEY = 2, ILSA_CELL_CHANNEL = 3 };
+enum {
+    ILSA_CELL_EMPTY = 0,
+    ILSA_CELL_TIP = 1,
+    ILSA_CELL_SURVEY = 2,
+    ILSA_CELL_CHANNEL = 3,
+    ILSA_CELL_CLOSED = 4
+};
 
 /* The kind of each of the nx * ny cells; read as the fields are. */
 ILSA_API ilsa_status ilsa_get_cell_kinds(const ilsa_solver *solver, const unsigned char **kind);
@@ -314,7 +322,7 @@ typedef struct ilsa_summary {
     double efficiency;                                  /* volume_fracture / volume_injected */
     double V_max;                                       /* fastest point of the front */
     int cells, tip_cells, survey_cells, arrested_cells; /* survey cells at rest: V = 0 */
-    int closed_cells;     /* survey and channel cells whose faces touch */
+    int closed_cells;     /* survey and channel cells whose faces touch: ILSA_CELL_CLOSED */
     double closure_width; /* the width that closed cells keep */
     int unknowns;         /* of the last step: after symmetry */
     ilsa_report total;    /* since the start; seconds, steps and iterations summed */

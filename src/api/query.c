@@ -1,8 +1,10 @@
 /* What a host reads off a solver: fields without a copy, and numbers for the whole fracture. */
+#include "flow/contact.h"
 #include "model/mesh.h"
 #include "step/solver.h"
 
 #include <math.h>
+#include <string.h>
 
 /* The checks that every reading starts with. */
 static ilsa_status readable(const ilsa_solver *s, const void *out, const char *name) {
@@ -44,7 +46,21 @@ ilsa_status ilsa_get_trigger_time(const ilsa_solver *solver, const double **trig
 
 ilsa_status ilsa_get_cell_kinds(const ilsa_solver *solver, const unsigned char **kind) {
     ILSAI_TRY(readable(solver, kind, "kind"));
-    *kind = solver->fracture.cells.kind;
+    const fracture *f = &solver->fracture;
+    const box *b = &f->footprint;
+    double closure = ilsai_fracture_closure_width(f, &solver->model);
+    unsigned char *out = solver->handed_out.kind;
+    memcpy(out, f->cells.kind, ilsai_mesh_cells(&solver->model.mesh));
+    for (int j = b->y0; j <= b->y1; j++) {
+        for (int i = b->x0; i <= b->x1; i++) {
+            int cell = j * solver->model.mesh.nx + i;
+            if (ilsai_is_channel(out[cell]) &&
+                ilsai_contact_closed(f->cells.width[cell], closure)) {
+                out[cell] = ILSA_CELL_CLOSED;
+            }
+        }
+    }
+    *kind = out;
     return ILSA_OK;
 }
 

@@ -39,7 +39,8 @@ static ilsa_status check_def(const ilsa_solver_def *def, error_text *error) {
 
 /* Fills a solver of zeros; what has been made by a failure is destroyed with it. */
 static ilsa_status build(ilsa_solver *s, const ilsa_solver_def *def, error_text *error) {
-    if (ilsai_model_create(&s->model, def) != ILSA_OK ||
+    s->handed_out.kind = ilsai_allocate_zeroed(ilsai_mesh_cells(&def->mesh->def), 1);
+    if (!s->handed_out.kind || ilsai_model_create(&s->model, def) != ILSA_OK ||
         ilsai_fracture_create(&s->fracture, &s->model) != ILSA_OK ||
         ilsai_trial_create(&s->trial, &s->model) != ILSA_OK) {
         return ilsai_fail(error, ILSA_ERR_MEMORY, "no memory for a solver of %d x %d cells",
@@ -80,6 +81,7 @@ void ilsa_solver_destroy(ilsa_solver **solver) {
     ilsai_model_destroy(&s->model);
     ilsai_release(s->handed_out.front);
     ilsai_release(s->handed_out.survey);
+    ilsai_release(s->handed_out.kind);
     ilsai_release(s);
     *solver = NULL;
 }

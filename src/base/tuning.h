@@ -52,6 +52,12 @@
 #define ILSAI_NEWTON_RESIDUAL  6.0
 /* A Newton step may take away this part of a width. */
 #define ILSAI_WIDTH_DROP 0.9
+/* From this iteration on a Newton step that leaves more volume unaccounted for than there was is
+ * cut by this factor, so many times at most: cells that close and open far apart in width send it
+ * to and fro. */
+#define ILSAI_NEWTON_GUARDED 6
+#define ILSAI_NEWTON_CUT     0.25
+#define ILSAI_NEWTON_CUTS    8
 /* A coupled solve is given up after so many iterations in which no cell closed or opened, or after
  * so many in all. */
 #define ILSAI_NEWTON_MAX  25
@@ -63,11 +69,6 @@
 #define ILSAI_CLOSURE 1e-4
 /* A Newton step may close a cell whose width is less than this many closure widths. */
 #define ILSAI_NEARLY_CLOSED 10.0
-/* From this Newton iteration on cells no longer open and close in turn, see flow/contact.h. */
-#define ILSAI_CONTACT_LATE 20
-/* The solve is given up where cells would then leave their bounds by more than this part of the
- * largest width or of the largest net pressure. */
-#define ILSAI_CONTACT_FORCED 1e-2
 
 /* ---- Iteration on the front --------------------------------------------------------------- */
 
@@ -113,6 +114,10 @@
 #define ILSAI_WET_MIN 1e-4
 /* Distances are kept up to this far beyond the front, in cell diagonals. */
 #define ILSAI_BAND 2.0
+/* How far the pressure of a tip cell may be from those of the channel and from its stress, in what
+ * a cell of the largest width so far presses on itself. A front that moves as the asymptote has it
+ * does not come near that. */
+#define ILSAI_TIP_REACH 3.0
 /* The pressure that a tip cell had is no first guess where its net pressure is more than this many
  * times the largest in the channel. */
 #define ILSAI_PRESSURE_WILD 1e3

@@ -9,23 +9,21 @@
 #include <ilsa/status.h>
 #include <stddef.h>
 
-/*
- * What the coupled solve finds in a numbered cell. From UNKNOWN_PRESSURE on it is a pressure; but
- * for UNKNOWN_WIDTH the width is given.
- */
+/* What the coupled solve finds in a numbered cell. */
 enum {
-    UNKNOWN_WIDTH,    /* an open channel cell; its pressure follows from the widths */
-    UNKNOWN_RETAINED, /* a draining cell: the part of its full leak-off that stays in it */
-    UNKNOWN_PRESSURE, /* a tip cell */
-    UNKNOWN_CONTACT   /* a closed cell: the pressure, which its faces make up for */
+    UNKNOWN_WIDTH,    /* a channel cell: the width, from which the pressure follows */
+    UNKNOWN_PRESSURE, /* a tip cell: the pressure; the front gives the width */
+    UNKNOWN_FILL,     /* a tip cell whose pressure is at a bound: the width, see solve/coupled.h */
+    UNKNOWN_NONE      /* a tip cell that no fluid reaches: the width is given, and the pressure
+                         follows from the widths */
 };
 
 typedef struct unknowns {
     int count;
     size_t capacity;
     int *cell;              /* mesh cell of each numbered cell */
-    unsigned char *unknown; /* set to UNKNOWN_PRESSURE in tip cells, elsewhere to UNKNOWN_WIDTH;
-                               flow/contact.h changes the latter */
+    unsigned char *unknown; /* set to UNKNOWN_PRESSURE in tip cells, which solve/coupled.c
+                               changes, elsewhere to UNKNOWN_WIDTH */
     int *neighbour;         /* GRID_FACES per numbered cell: the numbered cell across, or -1 */
     int *number;            /* over the mesh: the number of each cell, or -1 */
     size_t mesh_cells;

@@ -19,6 +19,7 @@
 #include "base/thread_pool.h"
 #include "base/unknowns.h"
 #include <ilsa/material.h>
+#include <stdbool.h>
 #include <stddef.h>
 
 /* One number per numbered cell and face, at GRID_FACES * cell + face. */
@@ -26,7 +27,12 @@ typedef struct lubrication {
     double *flux;        /* volume per area of the cell that enters it in the step */
     double *by_pressure; /* derivative by the pressure across the face less that of the cell */
     double *by_width;
-    size_t capacity; /* faces that the arrays have room for */
+    /* Where cells are closed or drain, see flow/contact.h, fluxes change with the width of the cell
+     * that they come from alone as well. */
+    bool restrained;         /* whether that is so; the other two are of no meaning without */
+    double *by_width_across; /* the derivative by the width of the cell across */
+    double *by_own_width;    /* per numbered cell: that of all that it gains by its own width */
+    size_t capacity;         /* cells that the arrays have room for */
 } lubrication;
 
 /* What a fluid may find its fluxes from. Widths and pressures are over the mesh. */

@@ -86,22 +86,25 @@ double ilsai_tip_cells_leakoff(const front_pass *p, const front_cell *c,
     return ilsai_leakoff_tip(p->material->C_prime, p->velocity, &at, history).volume;
 }
 
-/* Whether all survey cells that place the front in c are closed, so that no fluid comes to it. */
+/* Whether c is a tip cell that no fluid comes to: all survey cells that place the front in it are
+ * closed, and the front rests. */
 static bool is_cut_off(const front_pass *p, const front_cell *c) {
-    bool open = false;
+    bool reached = p->trial->kind[c->cell] != ILSA_CELL_TIP;
     for (int k = 0; k < c->from.count; k++) {
-        open |= p->trial->contact[p->survey_cells[c->from.survey[k]].cell] == CONTACT_OPEN;
+        const survey_cell *survey = &p->survey_cells[c->from.survey[k]];
+        reached |= p->trial->contact[survey->cell] == CONTACT_OPEN || survey->s > survey->s0;
     }
-    return !open;
+    return !reached;
 }
 
-/* Sets the leak-off of a cell and the path in it. A tip cell that is cut off leaks no more than it
- * loses in width. */
+/* Sets the leak-off of a cell and the path in it. A tip cell that is cut off leaks what it has over
+ * the closure width. */
 static void leak_at_front(const front_pass *p, const front_cell *c, tip_path *path) {
     path->cell = c->cell;
     double leak = ilsai_tip_cells_leakoff(p, c, &path->history);
-    if (p->trial->kind[c->cell] == ILSA_CELL_TIP && is_cut_off(p, c)) {
-        leak = fmin(leak, fmax(p->old->width[c->cell] - p->trial->width[c->cell], 0));
+    if (p->trial->contact[c->cell] == CONTACT_CUT_OFF) {
+        leak = fmin(leak, fmax(p->old->width[c->cell] - p->closure_width, 0));
+        p->trial->width[c->cell] = p->old->width[c->cell] - leak;
     }
     set_leakoff(p, c->cell, leak);
 }
@@ -186,8 +189,9 @@ static void set_cell(tip_cells *t, const front_pass *p, const front_cell *c, boo
     }
     if (kind == ILSA_CELL_TIP || was != ILSA_CELL_CHANNEL) {
         tip_width w = mean_width(p, c);
-        double most = is_cut_off(p, c) ? p->old->width[c->cell] : w.value;
-        p->trial->width[c->cell] = fmin(w.value, most);
+        bool cut_off = is_cut_off(p, c);
+        p->trial->contact[c->cell] = cut_off ? CONTACT_CUT_OFF : CONTACT_OPEN;
+        p->trial->width[c->cell] = cut_off ? p->old->width[c->cell] : w.value;
         t->width_slopes[k] = w.slopes;
     }
     if (p->material->C_prime > 0) {

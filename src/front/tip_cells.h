@@ -22,6 +22,7 @@ typedef struct front_pass {
     const elasticity *elastic;
     tip_cell_velocity velocity; /* of the front that leak-off counts with */
     double time, dt;            /* at the start of the step, and its length */
+    double closure_width;       /* of closed cells, see flow/contact.h */
     /* The fracture at the start of the step. */
     const fields *old;
     const tip_paths *old_paths;

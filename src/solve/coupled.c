@@ -9,6 +9,18 @@
 #include <math.h>
 #include <stdbool.h>
 
+/* The numbers that a Newton step changes in a cell, and what its unknown is. */
+enum {
+    KEPT_WIDTH,
+    KEPT_PRESSURE,
+    KEPT_SOURCE,
+    KEPT_LIFT,
+    KEPT_GIVEN,
+    KEPT_FILL,
+    KEPT_UNKNOWN,
+    KEPT
+};
+
 struct coupled {
     unknowns cells;
     lubrication lubrication;
@@ -18,10 +30,13 @@ struct coupled {
     /* Per numbered cell, changes in this solve by the sensitivities: of the source term, and of the
      * pressure at a given width. */
     double *source_change, *pressure_change;
-    double *closing_pressure; /* of a closed cell: the pressure when it closed or the solve began */
-    double *stress;  /* of a channel cell: sigma + C w, the pressure that holds its width */
+    double *given_width; /* of a channel cell: the least width; of a tip cell: the asymptote's */
+    double *openness, *openness_slope; /* see flow/contact.h */
+    double *kept;    /* KEPT per numbered cell: what it was before the last Newton step */
     size_t capacity; /* numbered cells that the arrays over them have room for */
-    int closed;      /* cells that are closed or drain */
+    int closed;      /* channel cells that are closed or drain */
+    int bounded;     /* tip cells whose pressure is at a bound */
+    int unreached;   /* tip cells that no fluid reaches */
     bool settled;    /* whether the last solve has ended with sensitivities that hold */
     double residual; /* of the last linear solve, relative */
 };
@@ -52,8 +67,10 @@ void ilsai_coupled_destroy(coupled **c) {
         ilsai_release((*c)->step);
         ilsai_release((*c)->source_change);
         ilsai_release((*c)->pressure_change);
-        ilsai_release((*c)->stress);
-        ilsai_release((*c)->closing_pressure);
+        ilsai_release((*c)->given_width);
+        ilsai_release((*c)->openness);
+        ilsai_release((*c)->openness_slope);
+        ilsai_release((*c)->kept);
         ilsai_release(*c);
         *c = NULL;
     }
@@ -72,25 +89,17 @@ static ilsa_status reserve(coupled *c, int count) {
                                   ILSAI_GROWN(c->step),
                                   ILSAI_GROWN(c->source_change),
                                   ILSAI_GROWN(c->pressure_change),
-                                  ILSAI_GROWN(c->stress),
-                                  ILSAI_GROWN(c->closing_pressure),
+                                  ILSAI_GROWN(c->given_width),
+                                  ILSAI_GROWN(c->openness),
+                                  ILSAI_GROWN(c->openness_slope),
+                                  {&c->kept, KEPT * sizeof *c->kept},
+                                  ILSAI_GROWN(c->matrix.fill),
+                                  ILSAI_GROWN(c->matrix.leakoff_by_fill),
                                   ILSAI_GROWN(c->matrix.self_correction),
                                   ILSAI_GROWN(c->matrix.sensitivity_of)};
     ILSAI_TRY(ilsai_lubrication_reserve(&c->lubrication, count));
     ILSAI_TRY(ilsai_gmres_reserve(c->krylov, (size_t)count));
     return ilsai_grow((size_t)count, &c->capacity, arrays, sizeof arrays / sizeof *arrays);
-}
-
-static contact contact_of(coupled *c, const coupled_problem *problem, bool late) {
-    return (contact){.field = problem->contact,
-                     .cells = &c->cells,
-                     .width_old = problem->width_old,
-                     .source_change = c->source_change,
-                     .stress = c->stress,
-                     .closing_pressure = c->closing_pressure,
-                     .width = problem->width,
-                     .pressure = problem->pressure,
-                     .late = late};
 }
 
 /* A loop over the numbered cells. */
@@ -109,13 +118,10 @@ static void add_pressures(void *context, int first, int end) {
     const coupled_problem *problem = ((const loop *)context)->problem;
     for (int k = first; k < end; k++) {
         int cell = c->cells.cell[k];
-        if (c->cells.unknown[k] != UNKNOWN_PRESSURE) {
-            c->stress[k] = problem->sigma[cell] + c->matrix.pressure[cell] +
-                           c->matrix.self_correction[k] * problem->width[cell] +
-                           c->pressure_change[k];
-        }
-        if (c->cells.unknown[k] < UNKNOWN_PRESSURE) {
-            problem->pressure[cell] = c->stress[k];
+        if (c->cells.unknown[k] == UNKNOWN_WIDTH || c->cells.unknown[k] == UNKNOWN_NONE) {
+            problem->pressure[cell] = problem->sigma[cell] + c->matrix.pressure[cell] +
+                                      c->matrix.self_correction[k] * problem->width[cell] +
+                                      c->pressure_change[k];
         }
     }
 }
@@ -131,6 +137,154 @@ void ilsai_coupled_pressure(coupled *c, const coupled_problem *problem, coupled_
     share_cells(add_pressures, c, problem);
 }
 
+/* ---- Closed cells, and tip cells at a bound of their pressure ---------------------------------
+ */
+
+/* The width up to which a cell carries no weight for the others. */
+static double nearly_closed(const coupled_problem *problem) {
+    return ILSAI_NEARLY_CLOSED * problem->contact.closure_width;
+}
+
+/* What leaks in the step from numbered cell k at the full rate, per area. */
+static double full_leakoff(const coupled *c, const coupled_problem *problem, int k) {
+    const double *leakoff = problem->contact.leakoff;
+    return leakoff ? fmax(leakoff[c->cells.cell[k]] - c->source_change[k], 0) : 0;
+}
+
+static void set_retained(const coupled_problem *problem, int cell, double retained) {
+    if (problem->contact.retained) {
+        problem->contact.retained[cell] = retained;
+    }
+}
+
+/*
+ * Puts the pressure of tip cell k on a bound that it has passed, and finds its width instead; once
+ * the width passes the asymptote's it is put on that, and the pressure is found again. Returns
+ * whether the cell has passed one.
+ */
+static bool bound_tip(const coupled *c, const coupled_problem *problem, int k) {
+    int cell = c->cells.cell[k];
+    const tip_pressures *of = &problem->tip_pressures;
+    double *p = &problem->pressure[cell], *width = &problem->width[cell];
+    double low = fmin(of->low, problem->sigma[cell]) - of->reach;
+    double high = fmax(of->high, problem->sigma[cell]) + of->reach;
+    if (!(of->reach > 0)) {
+        return false;
+    }
+    if (c->cells.unknown[k] == UNKNOWN_PRESSURE && (*p < low || *p > high)) {
+        *p = *p < low ? low : high;
+        c->given_width[k] = fmax(c->given_width[k], ILSAI_CLOSURE * problem->contact.closure_width);
+        *width = c->given_width[k];
+        c->cells.unknown[k] = UNKNOWN_FILL;
+        return true;
+    }
+    bool lacks_fluid = *p<0.5 * (low + high), more = *width> c->given_width[k];
+    if (c->cells.unknown[k] == UNKNOWN_FILL && lacks_fluid == more) {
+        *width = c->given_width[k];
+        c->cells.unknown[k] = UNKNOWN_PRESSURE;
+        return true;
+    }
+    return false;
+}
+
+/* A tip cell that is filled in part leaks in part. */
+static void set_fill(coupled *c, const coupled_problem *problem, int k) {
+    int cell = c->cells.cell[k];
+    double leakoff = full_leakoff(c, problem, k), whole = c->given_width[k];
+    double fill = problem->width[cell] / whole;
+    set_retained(problem, cell, leakoff * fmax(1 - fill, 0));
+    c->matrix.fill[k] = fill;
+    c->matrix.leakoff_by_fill[k] = fill <= 1 ? leakoff / whole : 0;
+    c->bounded++;
+}
+
+/* Sets the openness of channel cell k, and what of its leak-off it retains. */
+static void set_openness(coupled *c, const coupled_problem *problem, int k) {
+    int cell = c->cells.cell[k];
+    double closure = problem->contact.closure_width;
+    double m = problem->contact.state
+                   ? ilsai_contact_openness(problem->width[cell], c->given_width[k], closure)
+                   : 1;
+    c->openness[k] = m;
+    c->openness_slope[k] = m < 1 ? 1 / ilsai_contact_band(closure) : 0;
+    c->closed += m < 1;
+    set_retained(problem, cell, (1 - m) * full_leakoff(c, problem, k));
+}
+
+/* Sets what follows from the widths for cells that are closed, drain, or are at the front. */
+static void set_states(coupled *c, const coupled_problem *problem) {
+    c->closed = c->bounded = c->unreached = 0;
+    for (int k = 0; k < c->cells.count; k++) {
+        c->openness[k] = 1;
+        c->openness_slope[k] = 0;
+        switch (c->cells.unknown[k]) {
+        case UNKNOWN_WIDTH:
+            set_openness(c, problem, k);
+            break;
+        case UNKNOWN_PRESSURE:
+            c->matrix.fill[k] = 1;
+            set_retained(problem, c->cells.cell[k], 0);
+            break;
+        case UNKNOWN_FILL:
+            set_fill(c, problem, k);
+            break;
+        default:
+            c->unreached++;
+        }
+    }
+}
+
+/*
+ * Opens the closed and draining cells that gain fluid even if they let out and leak in full: the
+ * width that they find lies beyond that at which they drain. All of them are found before any is
+ * opened, so that their order does not count.
+ */
+static void open_cells(coupled *c, const coupled_problem *problem) {
+    for (int k = 0; k < c->cells.count; k++) {
+        int cell = c->cells.cell[k];
+        if (c->openness[k] < 1) {
+            double gain = ilsai_contact_gain(&c->lubrication, &c->cells, c->openness, k) +
+                          problem->source_term[cell] + c->source_change[k];
+            bool opens = gain > problem->width[cell] - problem->width_old[cell];
+            c->openness_slope[k] *= !opens;
+        }
+    }
+    for (int k = 0; k < c->cells.count; k++) {
+        if (c->openness[k] < 1 && c->openness_slope[k] == 0) {
+            c->openness[k] = 1;
+            c->closed--;
+            set_retained(problem, c->cells.cell[k], 0);
+        }
+    }
+}
+
+/*
+ * Lets no cell that is nearly closed, and no tip cell at a bound of its pressure, turn Newton's
+ * step around. Elasticity does not answer to the width of the latter.
+ */
+static void calm_cells(coupled *c, const coupled_problem *problem) {
+    for (int k = 0; k < c->cells.count; k++) {
+        int cell = c->cells.cell[k], nx = problem->g->nx;
+        bool fills = c->cells.unknown[k] == UNKNOWN_FILL;
+        bool nearly =
+            c->cells.unknown[k] == UNKNOWN_WIDTH && problem->width[cell] <= nearly_closed(problem);
+        if (nearly || fills) {
+            double self = ilsai_elasticity_self_entry(problem->elastic, cell % nx, cell / nx);
+            ilsai_contact_calm(&c->lubrication, &c->cells, k, fills ? 0 : self);
+        }
+    }
+}
+
+/* Holds back what flows out of cells that are closed or drain, and what leaks from them. */
+static void restrain(coupled *c, const coupled_problem *problem) {
+    ilsai_contact_restrain(&c->lubrication, &c->cells, c->openness, c->openness_slope);
+    for (int k = 0; k < c->cells.count; k++) {
+        c->lubrication.by_own_width[k] -= c->openness_slope[k] * full_leakoff(c, problem, k);
+    }
+}
+
+/* ---- A Newton step ------------------------------------------------------------------------ */
+
 static void balance_volumes(void *context, int first, int end) {
     const coupled *c = ((const loop *)context)->c;
     const coupled_problem *problem = ((const loop *)context)->problem;
@@ -140,10 +294,7 @@ static void balance_volumes(void *context, int first, int end) {
         double source = problem->source_term[cell] + c->source_change[k];
         source += problem->contact.retained ? problem->contact.retained[cell] : 0;
         c->rhs[k] = inflow + (source - (problem->width[cell] - problem->width_old[cell]));
-        if (c->cells.unknown[k] == UNKNOWN_CONTACT) {
-            c->rhs[k] -= ilsai_jacobian_extra_diagonal(&c->matrix, k) *
-                         (problem->pressure[cell] - c->closing_pressure[k]);
-        }
+        c->rhs[k] = c->cells.unknown[k] == UNKNOWN_NONE ? 0 : c->rhs[k];
     }
 }
 
@@ -158,6 +309,14 @@ static void set_rhs(coupled *c, const coupled_problem *problem) {
                         .pressure = problem->pressure,
                         .threads = problem->threads};
     problem->fluid->set_fluxes(&c->lubrication, &state);
+    c->lubrication.restrained = false;
+    if (problem->contact.state) {
+        open_cells(c, problem);
+        calm_cells(c, problem);
+    }
+    if (c->closed > 0 || c->unreached > 0) {
+        restrain(c, problem);
+    }
     share_cells(balance_volumes, c, problem);
 }
 
@@ -170,11 +329,6 @@ static ilsa_status solve_iterative(coupled *c, coupled_counts *counts) {
     counts->krylov += result.iterations;
     c->residual = result.residual;
     return result.converged ? ILSA_OK : ILSA_STEP_REJECTED;
-}
-
-/* The width up to which a cell carries no weight for the others. */
-static double nearly_closed(const coupled_problem *problem) {
-    return ILSAI_NEARLY_CLOSED * problem->contact.closure_width;
 }
 
 /*
@@ -193,122 +347,86 @@ static double step_length(const coupled *c, const coupled_problem *problem) {
     return length;
 }
 
+/* Changes the asymptote's width of tip cell k by its sensitivity. Returns false where it would be
+ * left with next to nothing: the sensitivity does not hold so far. */
+static bool move_given_width(const coupled *c, const coupled_problem *problem, int k,
+                             double length) {
+    double *width = &c->given_width[k];
+    double change = ilsai_jacobian_width_change(&c->matrix, k, c->step) / c->matrix.fill[k];
+    double delta = length * change;
+    bool holds = -delta <= ILSAI_WIDTH_DROP * *width || *width <= nearly_closed(problem);
+    *width = fmax(*width + delta, (1 - ILSAI_WIDTH_DROP) * *width);
+    return holds;
+}
+
 /*
  * Changes the unknown of numbered cell k, and what its sensitivity ties to other unknowns. Returns
- * false where a tip cell would be left with next to no width: its sensitivity does not hold so far.
+ * whether the sensitivity holds so far.
  */
 static bool move_cell(const coupled *c, const coupled_problem *problem, int k, double length) {
     bool holds = true;
     int cell = c->cells.cell[k];
     double delta = length * c->step[k], *width = &problem->width[cell];
+    double fill = c->matrix.fill[k];
     switch (c->cells.unknown[k]) {
     case UNKNOWN_WIDTH:
         *width += delta;
         c->pressure_change[k] += length * ilsai_jacobian_pressure_change(&c->matrix, k, c->step);
         break;
-    case UNKNOWN_RETAINED:
-        problem->contact.retained[cell] += delta;
+    case UNKNOWN_PRESSURE:
+        problem->pressure[cell] += delta;
+        holds = move_given_width(c, problem, k, length);
+        *width = c->given_width[k];
+        break;
+    case UNKNOWN_FILL:
+        fill = fmax(fill + delta / c->given_width[k], (1 - ILSAI_WIDTH_DROP) * fill);
+        holds = move_given_width(c, problem, k, length);
+        *width = fill * c->given_width[k];
         break;
     default:
-        problem->pressure[cell] += delta;
-        delta = length * ilsai_jacobian_width_change(&c->matrix, k, c->step);
-        holds = -delta <= ILSAI_WIDTH_DROP * *width || *width <= nearly_closed(problem);
-        *width = fmax(*width + delta, (1 - ILSAI_WIDTH_DROP) * *width);
+        return true;
     }
-    c->source_change[k] += length * ilsai_jacobian_source_change(&c->matrix, k, c->step);
+    c->source_change[k] +=
+        length * ilsai_jacobian_source_change(&c->matrix, k, c->step) / c->matrix.fill[k];
     return holds;
+}
+
+/* Keeps channel cell k at its least width or above. Returns whether it has closed or opened. */
+static bool bound_channel(const coupled *c, const coupled_problem *problem, int k) {
+    double *width = &problem->width[c->cells.cell[k]];
+    *width = fmax(*width, c->given_width[k]);
+    double m = ilsai_contact_openness(*width, c->given_width[k], problem->contact.closure_width);
+    return (m < 1) != (c->openness[k] < 1);
 }
 
 /* What a Newton step has done. */
 typedef struct progress {
-    double change; /* the largest of a width, or of a retained leak-off, over the largest width; NaN
-                      where the step is no number */
-    int switched;  /* cells that have closed or opened */
+    double change; /* the largest of a width over the largest width; NaN where the step is no
+                      number */
+    int switched;  /* cells that have closed or opened, or come to a bound or from it */
     bool holds;    /* whether all sensitivities do */
 } progress;
 
-/*
- * Whether a late solve has gone too far. It has where the leak-off of a draining cell is beyond its
- * bounds by too much of the largest width, or the pressure in a closed cell beyond the closure
- * stress by too much of the largest net pressure.
- */
-static bool is_forced(coupled *c, const coupled_problem *problem) {
-    contact faces = contact_of(c, problem, true);
-    double net = 0, width = 0, excess = 0, violation = 0;
-    for (int k = 0; k < c->cells.count; k++) {
-        int cell = c->cells.cell[k];
-        violation = fmax(violation, ilsai_contact_violation(&faces, k));
-        if (c->cells.unknown[k] == UNKNOWN_WIDTH) {
-            net = fmax(net, fabs(problem->pressure[cell] - problem->sigma[cell]));
-            width = fmax(width, problem->width[cell]);
-        } else if (c->cells.unknown[k] == UNKNOWN_CONTACT) {
-            excess = fmax(excess, problem->pressure[cell] - c->stress[k]);
-        }
-    }
-    return excess > ILSAI_CONTACT_FORCED * net || violation > ILSAI_CONTACT_FORCED * width;
-}
-
-static progress take_step(coupled *c, const coupled_problem *problem, double length, bool late) {
-    contact faces = contact_of(c, problem, late);
+static progress take_step(const coupled *c, const coupled_problem *problem, double length) {
     double change = 0, largest = 0, sum = 0;
     int switched = 0;
     bool holds = true;
     for (int k = 0; k < c->cells.count; k++) {
         double delta = length * c->step[k], *width = &problem->width[c->cells.cell[k]];
+        unsigned char unknown = c->cells.unknown[k];
         sum += delta;
         holds &= move_cell(c, problem, k, length);
-        if (c->cells.unknown[k] != UNKNOWN_PRESSURE) {
-            largest = *width > largest ? *width : largest;
-        }
-        if (c->cells.unknown[k] < UNKNOWN_PRESSURE) {
+        if (unknown == UNKNOWN_WIDTH || unknown == UNKNOWN_FILL) {
             change = fabs(delta) > change ? fabs(delta) : change;
-            switched += faces.field.state && ilsai_contact_bound(&faces, k);
-        } else if (c->cells.unknown[k] == UNKNOWN_CONTACT) {
-            switched += ilsai_contact_opens(&faces, k);
+        }
+        if (unknown == UNKNOWN_WIDTH) {
+            switched += problem->contact.state && bound_channel(c, problem, k);
+            largest = *width > largest ? *width : largest;
+        } else {
+            switched += bound_tip(c, problem, k);
         }
     }
     return (progress){isfinite(sum) && largest > 0 ? change / largest : NAN, switched, holds};
-}
-
-/*
- * The flow into a cell that opens is large for its width until the pressures on both sides have
- * met. Its derivative by the width would turn Newton's step around, so that the first iteration
- * goes without that derivative.
- */
-static void drop_width_derivatives(const coupled *c, int k) {
-    for (int face = 0; face < GRID_FACES; face++) {
-        int at = GRID_FACES * k + face, other = c->cells.neighbour[at];
-        c->lubrication.by_width[at] = 0;
-        for (int back = 0; other >= 0 && back < GRID_FACES; back++) {
-            int from = GRID_FACES * other + back;
-            c->lubrication.by_width[from] *= c->cells.neighbour[from] != k;
-        }
-    }
-}
-
-static void calm_opening_cells(const coupled *c, const coupled_problem *problem) {
-    for (int k = 0; k < c->cells.count; k++) {
-        if (problem->contact.state[c->cells.cell[k]] == CONTACT_OPENING) {
-            drop_width_derivatives(c, k);
-        }
-    }
-}
-
-/* Opens the closed cells whose pressure calls for it at the widths as they are, and counts the
- * cells that are closed or drain after that. Returns how many were opened. */
-static int reopen(coupled *c, const coupled_problem *problem, bool late) {
-    contact faces = contact_of(c, problem, late);
-    int opened = 0;
-    c->closed = 0;
-    for (int k = 0; k < c->cells.count; k++) {
-        const unsigned char *unknown = &c->cells.unknown[k];
-        if (*unknown == UNKNOWN_CONTACT && ilsai_contact_opens(&faces, k)) {
-            ilsai_contact_reopen(&faces, k);
-            opened++;
-        }
-        c->closed += *unknown == UNKNOWN_RETAINED || *unknown == UNKNOWN_CONTACT;
-    }
-    return opened;
 }
 
 static bool choose_dense(const coupled *c, const coupled_problem *problem) {
@@ -332,39 +450,114 @@ static ilsa_status solve_linear(coupled *c, bool dense, bool changed, coupled_co
                  : solve_iterative(c, counts);
 }
 
+/* Keeps what a Newton step is about to change. */
+static void keep(const coupled *c, const coupled_problem *problem) {
+    for (int k = 0; k < c->cells.count; k++) {
+        double *kept = c->kept + (size_t)KEPT * (size_t)k;
+        kept[KEPT_WIDTH] = problem->width[c->cells.cell[k]];
+        kept[KEPT_PRESSURE] = problem->pressure[c->cells.cell[k]];
+        kept[KEPT_SOURCE] = c->source_change[k];
+        kept[KEPT_LIFT] = c->pressure_change[k];
+        kept[KEPT_GIVEN] = c->given_width[k];
+        kept[KEPT_FILL] = c->matrix.fill[k];
+        kept[KEPT_UNKNOWN] = c->cells.unknown[k];
+    }
+}
+
+static void put_back(const coupled *c, const coupled_problem *problem) {
+    for (int k = 0; k < c->cells.count; k++) {
+        const double *kept = c->kept + (size_t)KEPT * (size_t)k;
+        problem->width[c->cells.cell[k]] = kept[KEPT_WIDTH];
+        problem->pressure[c->cells.cell[k]] = kept[KEPT_PRESSURE];
+        c->source_change[k] = kept[KEPT_SOURCE];
+        c->pressure_change[k] = kept[KEPT_LIFT];
+        c->given_width[k] = kept[KEPT_GIVEN];
+        c->matrix.fill[k] = kept[KEPT_FILL];
+        c->cells.unknown[k] = (unsigned char)kept[KEPT_UNKNOWN];
+    }
+}
+
+/* Sets states, pressures, fluxes and balances for the widths as they are. Returns the volume that
+ * is unaccounted for, over the area of a cell. */
+static double evaluate(coupled *c, const coupled_problem *problem, coupled_counts *counts) {
+    double sum = 0;
+    set_states(c, problem);
+    ilsai_coupled_pressure(c, problem, counts);
+    set_rhs(c, problem);
+    for (int k = 0; k < c->cells.count; k++) {
+        sum += fabs(c->rhs[k]);
+    }
+    return sum;
+}
+
+/* Cuts the last Newton step, of this length, until no more is unaccounted for than was before it,
+ * `least`. Returns what is unaccounted for at the end. */
+static double cut_step(coupled *c, const coupled_problem *problem, double length, double least,
+                       progress *made, coupled_counts *counts) {
+    double now = evaluate(c, problem, counts);
+    for (int cut = 0; cut < ILSAI_NEWTON_CUTS && now > least; cut++) {
+        length *= ILSAI_NEWTON_CUT;
+        put_back(c, problem);
+        set_states(c, problem);
+        *made = take_step(c, problem, length);
+        now = evaluate(c, problem, counts);
+    }
+    return now;
+}
+
 /*
- * Newton's method, which is semi-smooth where cells close or open: each iteration solves for the
- * unknowns that the states of contact call for, and leaves the states that its solution calls for.
+ * Newton's method, which is semi-smooth where cells close or open: it ends with an iteration in
+ * which none has.
  */
 static ilsa_status newton(coupled *c, const coupled_problem *problem, coupled_counts *counts) {
     bool dense = choose_dense(c, problem);
     int left = ILSAI_NEWTON_MAX;
     progress made = {0, 1, true};
+    double length = 1, unaccounted = INFINITY;
     c->residual = 0;
     for (int k = 0; k < ILSAI_CONTACT_MAX && left > 0; k++) {
-        bool late = k >= ILSAI_CONTACT_LATE;
-        ilsai_coupled_pressure(c, problem, counts);
-        made.switched += reopen(c, problem, late);
-        set_rhs(c, problem);
-        if (made.switched > 0 && problem->contact.state) {
-            calm_opening_cells(c, problem);
+        double least = k > ILSAI_NEWTON_GUARDED ? unaccounted : INFINITY;
+        unaccounted = cut_step(c, problem, length, least, &made, counts);
+        if (k >= ILSAI_NEWTON_GUARDED) {
+            keep(c, problem);
         }
-        ILSAI_TRY(solve_linear(c, dense, made.switched > 0, counts));
-        double length = step_length(c, problem);
-        made = take_step(c, problem, length, late);
+        ILSAI_TRY(solve_linear(c, dense, made.switched > 0 || c->bounded > 0, counts));
+        length = step_length(c, problem);
+        made = take_step(c, problem, length);
         if (isnan(made.change)) {
             return ILSA_STEP_REJECTED;
         }
         c->settled = made.holds;
-        if (!made.holds) {
+        if (!made.holds ||
+            (length == 1 && !made.switched && error_left(c, made.change) <= problem->tolerance)) {
+            set_states(c, problem);
             return ILSA_OK;
-        }
-        if (length == 1 && !made.switched && error_left(c, made.change) <= problem->tolerance) {
-            return late && is_forced(c, problem) ? ILSA_STEP_REJECTED : ILSA_OK;
         }
         left -= !made.switched;
     }
     return ILSA_STEP_REJECTED;
+}
+
+/* Sets what a solve begins with in numbered cell k: what its unknown is, and what bounds it. */
+static void begin_cell(coupled *c, const coupled_problem *problem, int k) {
+    int cell = c->cells.cell[k];
+    const contact_fields *contact = &problem->contact;
+    double old = problem->width_old[cell], *width = &problem->width[cell];
+    c->given_width[k] = *width;
+    c->matrix.fill[k] = 1;
+    c->matrix.leakoff_by_fill[k] = 0;
+    set_retained(problem, cell, 0);
+    if (!contact->state) {
+        return;
+    }
+    if (c->cells.unknown[k] == UNKNOWN_WIDTH) {
+        c->given_width[k] = ilsai_contact_least(old, contact->closure_width);
+        *width = fmax(*width, c->given_width[k]);
+    } else if (contact->state[cell] == CONTACT_CUT_OFF || (*width == 0 && old == 0)) {
+        c->cells.unknown[k] = UNKNOWN_NONE;
+    } else {
+        bound_tip(c, problem, k);
+    }
 }
 
 /* Sets what a solve begins with in each numbered cell, its sensitivity included. */
@@ -374,6 +567,7 @@ static void begin_cells(coupled *c, const coupled_problem *problem) {
         c->source_change[k] = c->pressure_change[k] = 0;
         c->matrix.self_correction[k] =
             problem->self_correction ? problem->self_correction[c->cells.cell[k]] : 0;
+        begin_cell(c, problem, k);
     }
     for (int r = 0; r < problem->sensitivity_count; r++) {
         int k = c->cells.number[problem->sensitivity[r].cell];
@@ -401,10 +595,6 @@ ilsa_status ilsai_coupled_solve(coupled *c, const coupled_problem *problem,
     c->matrix.elastic = problem->elastic;
     c->matrix.sensitivity = problem->sensitivity_count > 0 ? problem->sensitivity : NULL;
     begin_cells(c, problem);
-    if (problem->contact.state) {
-        contact faces = contact_of(c, problem, false);
-        ilsai_contact_begin(&faces);
-    }
     c->matrix.threads = problem->threads;
     problem->elastic->threads = problem->threads;
     c->matrix.products = 0;

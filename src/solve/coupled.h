@@ -14,6 +14,17 @@
 
 typedef struct coupled coupled;
 
+/*
+ * What the pressures of tip cells are bounded by. The pressure of a tip cell is what brings the
+ * fluid that the asymptote's width asks for. Where hardly any can pass it would be anything. It is
+ * kept within `reach` of the pressures of the channel, low to high, and of the cell's stress. At a
+ * bound the part of the asymptote's width that the fluid fills is found instead.
+ */
+typedef struct tip_pressures {
+    double low, high;
+    double reach; /* 0: there are no bounds */
+} tip_pressures;
+
 /* Makes room for a mesh of mesh->nx by mesh->ny cells. NULL on failure. */
 coupled *ilsai_coupled_create(const ilsa_mesh_def *mesh);
 void ilsai_coupled_destroy(coupled **c);
@@ -34,8 +45,9 @@ typedef struct coupled_problem {
     const sensitivity *sensitivity; /* of cells at the front; NULL: none */
     int sensitivity_count;
     contact_fields contact; /* where cells may close */
-    double *width;          /* in: first guess, and the tip widths; out: the solution */
-    double *pressure;       /* in: first guess in tip cells; out: the solution */
+    tip_pressures tip_pressures;
+    double *width;    /* in: first guess, and the tip widths; out: the solution */
+    double *pressure; /* in: first guess in tip cells; out: the solution */
     ilsa_linear_solver linear;
     double tolerance;     /* of the error in width, relative to the largest width */
     thread_pool *threads; /* that share the loops, or NULL */
@@ -63,7 +75,7 @@ bool ilsai_coupled_is_settled(const coupled *c);
 int ilsai_coupled_unknowns(const coupled *c);
 
 /*
- * Sets the pressures of the open channel cells to sigma + C w, Dontsov and Peirce 2017, (4.7), for
+ * Sets the pressures of the channel cells to sigma + C w, Dontsov and Peirce 2017, (4.7), for
  * the widths of the last solve, with the self terms corrected beside the front.
  */
 void ilsai_coupled_pressure(coupled *c, const coupled_problem *problem, coupled_counts *counts);

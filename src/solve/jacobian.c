@@ -17,11 +17,12 @@
  * flow of a step does not level out.
  */
 #define JACOBIAN_SPRING 3.0
-/* The part of that spring which holds the pressure of a closed cell to its value when it closed.
- * Hardly any fluid moves there, so that the pressure would be left undetermined. */
+/* The part of that spring which damps the change of the pressure of a tip cell in an iteration
+ * while cells are closed. Where closed cells let no fluid out to it that pressure is undetermined.
+ */
 #define JACOBIAN_SOFT 1e-6
-/* In the preconditioner the spring of a draining cell is this many times the sum of its other
- * springs and of the conductances around it. */
+/* In the preconditioner the spring of a cell whose pressure no flow changes is this many times the
+ * sum of its other springs and of the conductances around it. */
 #define JACOBIAN_STIFF 1e6
 
 void ilsai_jacobian_destroy(jacobian *m) {
@@ -32,6 +33,8 @@ void ilsai_jacobian_destroy(jacobian *m) {
     ilsai_release(m->pivots);
     ilsai_release(m->sensitivity_of);
     ilsai_release(m->self_correction);
+    ilsai_release(m->fill);
+    ilsai_release(m->leakoff_by_fill);
     ilsai_release(m->place);
     ilsai_release(m->weight);
     ilsai_multigrid_destroy(&m->multigrid);
@@ -39,22 +42,27 @@ void ilsai_jacobian_destroy(jacobian *m) {
     memset(m, 0, sizeof *m);
 }
 
-/* The sensitivity of numbered cell k. NULL: it has none, as a draining or closed cell. */
+/* The sensitivity of numbered cell k. NULL: it has none, as a cell that no fluid reaches. */
 static const sensitivity *sensitivity_of(const jacobian *m, int k) {
-    bool open = m->cells->unknown[k] == UNKNOWN_WIDTH || m->cells->unknown[k] == UNKNOWN_PRESSURE;
-    return m->sensitivity && open && m->sensitivity_of[k] >= 0
+    bool reached = m->cells->unknown[k] != UNKNOWN_NONE;
+    return m->sensitivity && reached && m->sensitivity_of[k] >= 0
                ? &m->sensitivity[m->sensitivity_of[k]]
                : NULL;
 }
 
 /* Whether the width of numbered cell k is an unknown. */
 static bool is_free(const jacobian *m, int k) {
+    return m->cells->unknown[k] == UNKNOWN_WIDTH || m->cells->unknown[k] == UNKNOWN_FILL;
+}
+
+/* Whether its pressure follows from the widths and is part of the flow. */
+static bool is_elastic(const jacobian *m, int k) {
     return m->cells->unknown[k] == UNKNOWN_WIDTH;
 }
 
-/* Whether its pressure is an unknown, as in a tip cell and in a closed cell. */
+/* Whether its pressure is an unknown. */
 static bool has_pressure(const jacobian *m, int k) {
-    return m->cells->unknown[k] >= UNKNOWN_PRESSURE;
+    return m->cells->unknown[k] == UNKNOWN_PRESSURE;
 }
 
 /* The entry of C between a cell and itself, that of the first numbered cell for all. */
@@ -68,11 +76,18 @@ static double spring_of(const jacobian *m) {
     return JACOBIAN_SPRING / self_entry(m);
 }
 
-double ilsai_jacobian_extra_diagonal(const jacobian *m, int k) {
-    int unknown = m->cells->unknown[k];
-    return unknown == UNKNOWN_RETAINED  ? -1
-           : unknown == UNKNOWN_CONTACT ? JACOBIAN_SOFT * spring_of(m)
-                                        : 0;
+/* What the unknown of numbered cell k adds to the diagonal of its own row beside its width. */
+static double extra_diagonal(const jacobian *m, int k) {
+    switch (m->cells->unknown[k]) {
+    case UNKNOWN_WIDTH:
+        return m->lubrication->restrained ? -m->lubrication->by_own_width[k] : 0;
+    case UNKNOWN_PRESSURE:
+        return m->lubrication->restrained ? JACOBIAN_SOFT * spring_of(m) : 0;
+    case UNKNOWN_FILL:
+        return m->leakoff_by_fill[k];
+    default:
+        return 1;
+    }
 }
 
 /* The change for changes x of the unknowns, given the derivatives of a sensitivity. */
@@ -88,12 +103,12 @@ static double change_by(const jacobian *m, const sensitivity *r, const double *d
 
 double ilsai_jacobian_width_change(const jacobian *m, int k, const double *x) {
     const sensitivity *r = sensitivity_of(m, k);
-    return r ? change_by(m, r, r->width, x) : 0;
+    return r ? m->fill[k] * change_by(m, r, r->width, x) : 0;
 }
 
 double ilsai_jacobian_source_change(const jacobian *m, int k, const double *x) {
     const sensitivity *r = sensitivity_of(m, k);
-    return r ? change_by(m, r, r->source_term, x) : 0;
+    return r ? m->fill[k] * change_by(m, r, r->source_term, x) : 0;
 }
 
 double ilsai_jacobian_pressure_change(const jacobian *m, int k, const double *x) {
@@ -117,8 +132,9 @@ static void set_widths(void *context, int first, int end) {
     const loop *l = context;
     const jacobian *m = l->m;
     for (int k = first; k < end; k++) {
-        m->width[m->cells->cell[k]] =
-            is_free(m, k) ? l->x[k] : ilsai_jacobian_width_change(m, k, l->x);
+        double own = is_free(m, k) ? l->x[k] : 0;
+        own += is_elastic(m, k) ? 0 : ilsai_jacobian_width_change(m, k, l->x);
+        m->width[m->cells->cell[k]] = own;
     }
 }
 
@@ -127,11 +143,11 @@ static void complete_pressures(void *context, int first, int end) {
     const jacobian *m = l->m;
     for (int k = first; k < end; k++) {
         double *pressure = &m->pressure[m->cells->cell[k]];
-        if (is_free(m, k)) {
+        if (is_elastic(m, k)) {
             *pressure +=
                 m->self_correction[k] * l->x[k] + ilsai_jacobian_pressure_change(m, k, l->x);
-        } else if (has_pressure(m, k)) {
-            *pressure = l->x[k];
+        } else {
+            *pressure = has_pressure(m, k) ? l->x[k] : 0;
         }
     }
 }
@@ -157,6 +173,11 @@ static void clear_widths(void *context, int first, int end) {
     }
 }
 
+/* What a face brings for the change of the width across, beside by_width. */
+static double across_alone(const jacobian *m, int at) {
+    return m->lubrication->restrained ? m->lubrication->by_width_across[at] : 0;
+}
+
 static void balance_volumes(void *context, int first, int end) {
     const loop *l = context;
     const jacobian *m = l->m;
@@ -168,10 +189,12 @@ static void balance_volumes(void *context, int first, int end) {
         for (int face = 0; face < GRID_FACES; face++) {
             int at = GRID_FACES * k + face, other = cells->neighbour[at];
             if (other >= 0) {
-                from_width += m->lubrication->by_width[at] * (w + m->width[cells->cell[other]]);
+                double across = m->width[cells->cell[other]];
+                from_width += m->lubrication->by_width[at] * (w + across);
+                from_width += across_alone(m, at) * across;
             }
         }
-        double own = is_free(m, k) ? w : w + ilsai_jacobian_extra_diagonal(m, k) * l->x[k];
+        double own = w + extra_diagonal(m, k) * l->x[k];
         l->y[k] = own - from_width - from_pressure - ilsai_jacobian_source_change(m, k, l->x);
     }
 }
@@ -216,11 +239,17 @@ static void place_cells(void *context, int first, int end) {
     }
 }
 
-/* The spring of a cell whose width is given. The pressure of a draining cell follows from the
- * widths around it and no flow changes it, so that its spring is a stiff one. */
-static double spring_of_given_width(const jacobian *m, int k, double spring) {
-    if (m->cells->unknown[k] != UNKNOWN_RETAINED) {
-        return ilsai_jacobian_extra_diagonal(m, k);
+/* Whether elasticity finds the width of numbered cell k from its pressure. That of a cell which
+ * closes hardly moves: what it leaks and lets out sees to that. */
+static bool bends(const jacobian *m, int k) {
+    return is_elastic(m, k) && !(m->lubrication->restrained && m->lubrication->by_own_width[k] < 0);
+}
+
+/* The spring of a cell that does not bend. Where its pressure is not the unknown no flow changes
+ * it, so that its spring is a stiff one. */
+static double spring_of_stiff_cell(const jacobian *m, int k, double spring) {
+    if (has_pressure(m, k)) {
+        return extra_diagonal(m, k);
     }
     const double *by_pressure = m->lubrication->by_pressure + (size_t)GRID_FACES * (size_t)k;
     double pull = spring;
@@ -241,16 +270,15 @@ static void set_flow(void *context, int first, int end) {
         size_t at = m->place[k];
         l->right[at] = half_on_axis(g->mirror_y, g->ny, j, g->lo_y) * by_pressure[GRID_RIGHT];
         l->up[at] = half_on_axis(g->mirror_x, g->nx, i, g->lo_x) * by_pressure[GRID_UP];
-        l->spring[at] =
-            m->weight[k] * (is_free(m, k) ? spring : spring_of_given_width(m, k, spring));
+        l->spring[at] = m->weight[k] * (bends(m, k) ? spring : spring_of_stiff_cell(m, k, spring));
     }
 }
 
 static void set_open_cells(void *context, int first, int end) {
     jacobian *m = ((const loop *)context)->m;
     for (int k = first; k < end; k++) {
-        m->near_field.open[m->place[k]] = is_free(m, k);
-        m->near_field.extra[m->place[k]] = is_free(m, k) ? corrected_self(m, k) : 0;
+        m->near_field.open[m->place[k]] = bends(m, k);
+        m->near_field.extra[m->place[k]] = bends(m, k) ? corrected_self(m, k) : 0;
     }
 }
 
@@ -296,7 +324,7 @@ static void hand_over(void *context, int first, int end) {
     jacobian *m = ((const loop *)context)->m;
     for (int k = first; k < end; k++) {
         size_t at = m->place[k];
-        m->near_field.y[at] = is_free(m, k) ? m->multigrid.level[0].y[at] : 0;
+        m->near_field.y[at] = bends(m, k) ? m->multigrid.level[0].y[at] : 0;
     }
 }
 
@@ -305,19 +333,17 @@ static void read_out(void *context, int first, int end) {
     const jacobian *m = l->m;
     for (int k = first; k < end; k++) {
         size_t at = m->place[k];
-        double pressure = m->multigrid.level[0].y[at];
-        l->y[k] = is_free(m, k) ? m->near_field.x[at]
-                  : has_pressure(m, k)
-                      ? pressure
-                      : -m->multigrid.level[0].spring[at] / m->weight[k] * pressure;
+        l->y[k] = bends(m, k)          ? m->near_field.x[at]
+                  : has_pressure(m, k) ? m->multigrid.level[0].y[at]
+                                       : l->x[k] / (is_free(m, k) + extra_diagonal(m, k));
     }
 }
 
 /*
  * The matrix is nearly (d - dt A) C, because C^-1 acts on pressures as a spring d wherever flow
  * does not level them out. So multigrid finds pressures first, and the near field of C finds widths
- * from them. Where the pressure is the unknown it is the result. In a draining cell the result is
- * the fluid that its spring takes up, with the sign of the part of the leak-off that it retains.
+ * from them. Where the pressure is the unknown it is the result. In a cell whose pressure no flow
+ * changes the diagonal alone is inverted.
  */
 void ilsai_jacobian_precondition(void *context, const double *x, double *y) {
     jacobian *m = context;
@@ -326,7 +352,7 @@ void ilsai_jacobian_precondition(void *context, const double *x, double *y) {
     ilsai_multigrid_cycle(&m->multigrid);
     share_cells(hand_over, m, NULL, NULL);
     ilsai_near_field_solve(&m->near_field);
-    share_cells(read_out, m, NULL, y);
+    share_cells(read_out, m, x, y);
     m->seconds_preconditioner += ilsai_clock() - start;
 }
 
@@ -358,8 +384,9 @@ static void add_width(const jacobian *m, double *out, int k, double value) {
     const sensitivity *r = sensitivity_of(m, k);
     if (is_free(m, k)) {
         out[k] += value;
-    } else {
-        add_sensitivity(m, out, r, r ? r->width : NULL, value);
+    }
+    if (!is_elastic(m, k)) {
+        add_sensitivity(m, out, r, r ? r->width : NULL, m->fill[k] * value);
     }
 }
 
@@ -373,18 +400,16 @@ static void add_width(const jacobian *m, double *out, int k, double value) {
 static void fill_influence_row(jacobian *m, int row, double *out) {
     const unknowns *cells = m->cells;
     memset(out, 0, (size_t)cells->count * sizeof *out);
-    if (has_pressure(m, row)) {
-        out[row] = self_entry(m);
+    if (!is_elastic(m, row)) {
+        out[row] = has_pressure(m, row) ? self_entry(m) : 0;
         return;
     }
     for (int k = 0; k < cells->count; k++) {
         add_width(m, out, k, folded_entry(m, row, k));
     }
-    if (is_free(m, row)) {
-        const sensitivity *own = sensitivity_of(m, row);
-        out[row] += m->self_correction[row];
-        add_sensitivity(m, out, own, own ? own->pressure : NULL, 1);
-    }
+    const sensitivity *own = sensitivity_of(m, row);
+    out[row] += m->self_correction[row];
+    add_sensitivity(m, out, own, own ? own->pressure : NULL, 1);
 }
 
 ilsa_status ilsai_jacobian_set_influence(jacobian *m) {
@@ -414,18 +439,15 @@ static void fill_full_row(jacobian *m, int row) {
         }
         cblas_daxpy((int)n, -m->lubrication->by_pressure[at], m->influence + (size_t)other * n, 1,
                     out, 1);
-        add_width(m, out, other, -m->lubrication->by_width[at]);
+        add_width(m, out, other, -m->lubrication->by_width[at] - across_alone(m, at));
         diagonal -= m->lubrication->by_width[at];
         total += m->lubrication->by_pressure[at];
     }
     cblas_daxpy((int)n, total, m->influence + (size_t)row * n, 1, out, 1);
     add_width(m, out, row, diagonal);
     const sensitivity *r = sensitivity_of(m, row);
-    add_sensitivity(m, out, r, r ? r->source_term : NULL, -1);
-    if (!is_free(m, row)) {
-        double unit = has_pressure(m, row) ? self_entry(m) : 1;
-        out[row] += unit * ilsai_jacobian_extra_diagonal(m, row);
-    }
+    add_sensitivity(m, out, r, r ? r->source_term : NULL, -m->fill[row]);
+    out[row] += (has_pressure(m, row) ? self_entry(m) : 1) * extra_diagonal(m, row);
 }
 
 ilsa_status ilsai_jacobian_solve_full(jacobian *m, const double *b, double *x) {

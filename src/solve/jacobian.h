@@ -3,10 +3,10 @@
  * full form for few unknowns. See docs/theory.md, section 8.
  *
  * The rows are the volume balances of the numbered cells, Dontsov and Peirce 2017, (4.4). The
- * columns are the unknowns, see base/unknowns.h: the width of an open channel cell, the pressure of
- * a tip cell or of a closed one, the retained leak-off of a draining one. With widths alone in the
- * channel the matrix is D - dt A [C, I], where D is the derivative of the balance by the widths at
- * given pressures, A the lubrication operator, C the elasticity and I the pressures of tip cells.
+ * columns are the unknowns, see base/unknowns.h: the width of a channel cell, the pressure of a tip
+ * cell or, where that is at a bound, its width. The matrix is D - dt A [C, I], where D is the
+ * derivative of the balance by the widths at given pressures, A the lubrication operator, C the
+ * elasticity and I the pressures of tip cells.
  */
 #ifndef ILSAI_JACOBIAN_H
 #define ILSAI_JACOBIAN_H
@@ -30,6 +30,8 @@ typedef struct jacobian {
     /* Per numbered cell, set by the caller and released here. */
     double *self_correction; /* what its self term of C lacks beside the front */
     int *sensitivity_of;     /* index of its sensitivity, or -1 */
+    double *fill;            /* of UNKNOWN_FILL: its width over the asymptote's; 1 for others */
+    double *leakoff_by_fill; /* of UNKNOWN_FILL: the derivative of its leak-off by its width */
 
     /* Work over the mesh: changes of widths and of pressures. The widths are zero between calls. */
     double *width, *pressure;
@@ -71,19 +73,12 @@ ilsa_status ilsai_jacobian_solve_full(jacobian *m, const double *b, double *x);
 
 /*
  * The changes of numbered cell k, by its sensitivity, for changes x of the unknowns: of the width
- * of a tip cell, of the source term, and of the pressure in an open channel cell by what its self
- * term lacks, at a width that stays. Zero for a cell without a sensitivity.
+ * of a tip cell, of the source term, and of the pressure in a channel cell by what its self term
+ * lacks, at a width that stays. A tip cell has them in proportion to its fill. Zero for a cell
+ * without a sensitivity.
  */
 double ilsai_jacobian_width_change(const jacobian *m, int k, const double *x);
 double ilsai_jacobian_source_change(const jacobian *m, int k, const double *x);
 double ilsai_jacobian_pressure_change(const jacobian *m, int k, const double *x);
-
-/*
- * What the unknown of numbered cell k adds to the diagonal of its own row where that unknown is not
- * the width. It is -1 for retained leak-off, which stays in the cell. It is a weak spring for the
- * pressure of a closed cell: hardly any fluid moves there, so that the pressure would be left
- * undetermined. It is 0 for a tip cell.
- */
-double ilsai_jacobian_extra_diagonal(const jacobian *m, int k);
 
 #endif

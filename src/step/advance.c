@@ -108,7 +108,8 @@ static void count_work(ilsa_solver *s, ilsa_report *report, double seconds) {
 static ilsa_status attempt(ilsa_solver *s, double dt, double time_after, ilsa_report *report) {
     double start = ilsai_clock();
     ilsa_status status = ilsai_step(s, dt, time_after);
-    *report = (ilsa_report){.steps = status == ILSA_OK, .rejected = status != ILSA_OK};
+    bool refused = status != ILSA_OK && status != ILSA_CLOSED;
+    *report = (ilsa_report){.steps = status == ILSA_OK, .rejected = refused};
     s->pace.dt_limit *= status == ILSA_OK ? ILSAI_DT_GROWTH : 1;
     count_refusals(s, status);
     if (reason(status)) {

@@ -25,6 +25,7 @@ typedef struct handed_out {
     ilsa_front_point *front;
     size_t front_capacity;
     ilsa_survey_point *survey;
+    unsigned char *kind; /* over the mesh: the fracture's, with closed cells told from others */
     size_t survey_capacity;
 } handed_out;
 

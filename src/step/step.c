@@ -137,26 +137,27 @@ static coupled_problem pose(ilsa_solver *s) {
     const numerics *n = &s->numerics;
     double share = fmin(ILSAI_PASS_SHARE, ILSAI_PASS_SHARP * n->tolerance);
     double aim = is_nested(s) ? n->tolerance : fmax(share * t->change, tolerance_now(s, 0));
-    return (coupled_problem){.g = &t->g,
-                             .elastic = n->elastic,
-                             .fluid = &ilsai_newtonian,
-                             .material = &s->model.material,
-                             .footprint = t->tips.footprint,
-                             .kind = t->cells.kind,
-                             .sigma = s->model.sigma,
-                             .width_old = s->fracture.cells.width,
-                             .source_term = t->cells.source_term,
-                             .self_correction = t->cells.self_correction,
-                             .width = t->cells.width,
-                             .pressure = t->cells.pressure,
-                             .dt = t->dt,
-                             .linear = s->model.options.linear,
-                             .contact = {ilsai_fracture_closure_width(&s->fracture, &s->model),
-                                         t->cells.contact, t->cells.leakoff, t->cells.retained},
-                             .sensitivity = t->tips.sensitivities,
-                             .sensitivity_count = t->tips.sensitivity_count,
-                             .threads = n->threads,
-                             .tolerance = ILSAI_WIDTH_TOLERANCE * fmin(aim, 0.1)};
+    return (coupled_problem){
+        .g = &t->g,
+        .elastic = n->elastic,
+        .fluid = &ilsai_newtonian,
+        .material = &s->model.material,
+        .footprint = t->tips.footprint,
+        .kind = t->cells.kind,
+        .sigma = s->model.sigma,
+        .width_old = s->fracture.cells.width,
+        .source_term = t->cells.source_term,
+        .self_correction = t->cells.self_correction,
+        .width = t->cells.width,
+        .pressure = t->cells.pressure,
+        .dt = t->dt,
+        .linear = s->model.options.linear,
+        .contact = {t->closure_width, t->cells.contact, t->cells.leakoff, t->cells.retained},
+        .tip_pressures = t->tip_pressures,
+        .sensitivity = t->tips.sensitivities,
+        .sensitivity_count = t->tips.sensitivity_count,
+        .threads = n->threads,
+        .tolerance = ILSAI_WIDTH_TOLERANCE * fmin(aim, 0.1)};
 }
 
 /*

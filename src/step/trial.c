@@ -82,7 +82,6 @@ static void begin_rows(void *context, int first, int end) {
     const row_loop *l = context;
     fields *cells = &l->t->cells;
     const fields *old = &l->f->cells;
-    double closure = ilsai_fracture_closure_width(l->f, l->m);
     box part = ilsai_box_fold(&l->t->g, &l->t->region);
     for (int j = part.y0 + first; j < part.y0 + end; j++) {
         for (int i = part.x0; i <= part.x1; i++) {
@@ -91,9 +90,10 @@ static void begin_rows(void *context, int first, int end) {
             cells->leakoff[cell] = channel && old->trigger ? channel_leakoff(l, cell) : 0;
             cells->source_term[cell] = -cells->leakoff[cell];
             cells->self_correction[cell] = 0;
-            cells->contact[cell] = channel && ilsai_contact_closed(old->width[cell], closure)
-                                       ? CONTACT_CLOSED
-                                       : CONTACT_OPEN;
+            cells->contact[cell] =
+                channel && ilsai_contact_closed(old->width[cell], l->t->closure_width)
+                    ? CONTACT_CLOSED
+                    : CONTACT_OPEN;
         }
     }
 }
@@ -115,6 +115,21 @@ static void forget_wild_pressures(trial *t, const model *m, const fracture *f, c
                            net > ILSAI_PRESSURE_WILD * largest) {
                     t->cells.pressure[cell] = 0;
                 }
+            }
+        }
+    }
+}
+
+/* Bounds the pressures of tip cells by those of the channel as the last step left them. */
+static void bound_tip_pressures(trial *t, const fracture *f, const numerics *n, const box *part) {
+    double self = ilsai_elasticity_self_entry(n->elastic, part->x0, part->y0);
+    t->tip_pressures = (tip_pressures){INFINITY, -INFINITY, ILSAI_TIP_REACH * f->width_most * self};
+    for (int j = part->y0; j <= part->y1; j++) {
+        for (int i = part->x0; i <= part->x1; i++) {
+            int cell = ilsai_grid_cell(&t->g, i, j);
+            if (ilsai_is_channel(f->cells.kind[cell])) {
+                t->tip_pressures.low = fmin(t->tip_pressures.low, f->cells.pressure[cell]);
+                t->tip_pressures.high = fmax(t->tip_pressures.high, f->cells.pressure[cell]);
             }
         }
     }
@@ -143,6 +158,7 @@ ilsa_status ilsai_trial_begin(trial *t, const model *m, const fracture *f, numer
     t->dt = dt;
     t->g = ilsai_model_grid(m, f->mirror_x, f->mirror_y);
     t->region = ilsai_fracture_region(&m->mesh, &f->footprint);
+    t->closure_width = ilsai_fracture_closure_width(f, m);
     t->tips.paths.count = 0;
     t->tips.sensitivity_count = 0;
     ilsai_fields_copy(&t->cells, &f->cells, t->g.nx, &t->region);
@@ -159,6 +175,7 @@ ilsa_status ilsai_trial_begin(trial *t, const model *m, const fracture *f, numer
                           1 + ILSAI_SHARE_CELLS / (columns + 1));
     ilsai_elasticity_make_self_terms(n->elastic);
     forget_wild_pressures(t, m, f, &part);
+    bound_tip_pressures(t, f, n, &part);
     return add_sources(t, m, f, error);
 }
 
@@ -176,6 +193,7 @@ front_pass ilsai_trial_pass(trial *t, const model *m, const fracture *f, const n
                         .velocity = n->velocity,
                         .time = f->time,
                         .dt = t->dt,
+                        .closure_width = t->closure_width,
                         .old = &f->cells,
                         .old_paths = &f->paths,
                         .old_footprint = f->footprint,
@@ -188,7 +206,7 @@ front_pass ilsai_trial_pass(trial *t, const model *m, const fracture *f, const n
 }
 
 bool ilsai_trial_is_open(const trial *t, int k) {
-    return t->cells.contact[t->survey_cells[k].cell] == CONTACT_OPEN;
+    return !ilsai_contact_closed(t->cells.width[t->survey_cells[k].cell], t->closure_width);
 }
 
 double ilsai_trial_advance(const trial *t) {
@@ -202,14 +220,14 @@ double ilsai_trial_advance(const trial *t) {
 
 /* ---- Volumes ------------------------------------------------------------------------------ */
 
-/* Nothing comes back, whatever a late solve has let go, see flow/contact.h. */
 double ilsai_trial_leaked_from(const trial *t, int cell) {
     double retained = t->cells.retained ? t->cells.retained[cell] : 0;
-    return t->cells.leakoff[cell] - fmax(fmin(retained, t->cells.leakoff[cell]), 0);
+    return t->cells.leakoff[cell] - fmin(retained, t->cells.leakoff[cell]);
 }
 
 static bool is_open_channel(const trial *t, int cell) {
-    return ilsai_is_channel(t->cells.kind[cell]) && t->cells.contact[cell] == CONTACT_OPEN;
+    return ilsai_is_channel(t->cells.kind[cell]) &&
+           !ilsai_contact_closed(t->cells.width[cell], t->closure_width);
 }
 
 trial_volumes ilsai_trial_volumes(const trial *t) {

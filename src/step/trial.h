@@ -9,6 +9,7 @@
 #define ILSAI_TRIAL_H
 
 #include "front/tip_cells.h"
+#include "solve/coupled.h"
 #include "step/fracture.h"
 #include "step/numerics.h"
 
@@ -37,7 +38,9 @@ typedef struct trial {
     int survey_count;
     size_t survey_capacity;
 
-    tip_cells tips; /* what the last pass has found at the front; footprint included */
+    tip_cells tips;              /* what the last pass has found at the front; footprint included */
+    tip_pressures tip_pressures; /* what bounds those of tip cells */
+    double closure_width;        /* of closed cells */
 
     /* Set once front and widths agree. */
     double change;     /* of the front in the last pass, in cells */
@@ -69,7 +72,7 @@ survey_widths ilsai_trial_widths(const trial *t, const model *m, const numerics 
 /* Advance of the front so far, in cells: the largest of the survey cells'. */
 double ilsai_trial_advance(const trial *t);
 
-/* Whether survey cell k is open; the front before a closed one rests. */
+/* Whether survey cell k is open as the widths are now; the front before a closed one rests. */
 bool ilsai_trial_is_open(const trial *t, int k);
 
 trial_volumes ilsai_trial_volumes(const trial *t);

@@ -85,7 +85,7 @@ static void check_fields(const ilsa_solver *s, const ilsa_summary *sum) {
     FUZZ_EXPECT(!ilsa_get_pressure(s, &pressure) && !ilsa_get_stress(s, &stress));
     FUZZ_EXPECT(!ilsa_get_trigger_time(s, &trigger) && !ilsa_get_cell_kinds(s, &kind));
     for (int k = 0; k < mesh.nx * mesh.ny; k++) {
-        FUZZ_EXPECT(kind[k] <= ILSA_CELL_CHANNEL && isfinite(stress[k]));
+        FUZZ_EXPECT(kind[k] <= ILSA_CELL_CLOSED && isfinite(stress[k]));
         FUZZ_EXPECT(is_finite_and_positive(width[k]) && isfinite(pressure[k]));
         FUZZ_EXPECT(kind[k] || (width[k] == 0 && pressure[k] == 0));
         FUZZ_EXPECT(!trigger || !isnan(trigger[k]));

@@ -123,7 +123,7 @@ static void check_widths(const ilsa_solver *solver) {
     FUZZ_EXPECT(!ilsa_get_cell_kinds(solver, &kind));
     for (int k = 0; k < SIZE * SIZE; k++) {
         FUZZ_EXPECT(width[k] >= 0 && isfinite(width[k]) && isfinite(pressure[k]));
-        FUZZ_EXPECT(kind[k] <= ILSA_CELL_CHANNEL);
+        FUZZ_EXPECT(kind[k] <= ILSA_CELL_CLOSED);
     }
 }
 
