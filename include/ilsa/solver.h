@@ -233,6 +233,16 @@ ILSA_API ilsa_status ilsa_wait(ilsa_solver *solver, double t);
  */
 ILSA_API ilsa_status ilsa_coarsen(ilsa_solver *solver);
 
+/* Directions of the mesh, which may be added up. */
+enum { ILSA_ALONG_X = 1, ILSA_ALONG_Y = 2 };
+
+/*
+ * Coarsens along x, y or both: cells become twice as long in the directions given, and stay as they
+ * are in the others. The footprint must be 4 of the new cells across in the directions given, and
+ * dx / dy must stay within 1e-3 .. 1e3. With both directions it is ilsa_coarsen, with its statuses.
+ */
+ILSA_API ilsa_status ilsa_coarsen_along(ilsa_solver *solver, int directions);
+
 /*
  * Writes the mesh that the solver stands on now. Coarsening changes it, and so does a snapshot that
  * was taken on other cells. ILSA_ERR_NULL.

@@ -15,7 +15,7 @@
 #include <string.h>
 
 #define SNAPSHOT_MAGIC "ilsasnap"
-enum { SNAPSHOT_LAYOUT = 4 };
+enum { SNAPSHOT_LAYOUT = 5 };
 
 typedef struct header {
     char magic[8];
@@ -26,8 +26,8 @@ typedef struct header {
 
 /* What a solver must share with the one that the snapshot was taken of. */
 typedef struct identity {
-    int nx, ny, source_count, none;
-    double dx, dy; /* as they were; coarsening doubles them */
+    ilsa_mesh_def mesh; /* of the definition */
+    int source_count, none;
     ilsa_material_def material;
     double option[OPTION_COUNT]; /* in force; 0 where it need not be shared */
 } identity;
@@ -73,11 +73,8 @@ static identity identify(const ilsa_solver *s) {
     const model *m = &s->model;
     identity id;
     memset(&id, 0, sizeof id);
-    id.nx = m->mesh.nx;
-    id.ny = m->mesh.ny;
+    id.mesh = m->defined;
     id.source_count = m->sources.count;
-    id.dx = m->mesh.dx;
-    id.dy = m->mesh.dy;
     id.material = m->material;
     id.material.mu_prime = m->inviscid ? 0 : m->material.mu_prime;
     for (int k = 0; k < OPTION_COUNT; k++) {
@@ -88,16 +85,22 @@ static identity identify(const ilsa_solver *s) {
     return id;
 }
 
-/* The same definition, however often either has been coarsened, which doubles dx and dy. */
 static bool same_definition(const identity *a, const identity *b) {
-    identity like = *a;
-    int times;
-    like.dx = b->dx;
-    like.dy = b->dy;
     /* Copies of the same bits are meant, and every byte is defined. */
     /* NOLINTNEXTLINE(bugprone-suspicious-memory-comparison,cert-exp42-c,cert-flp37-c) */
-    return memcmp(&like, b, sizeof like) == 0 && frexp(a->dx / b->dx, &times) == 0.5 &&
-           a->dx / b->dx == a->dy / b->dy;
+    return memcmp(a, b, sizeof *a) == 0;
+}
+
+/* Whether coarsening makes a size of cells from that of the definition: it doubles it. */
+static bool is_coarsened(double now, double defined) {
+    int times;
+    return frexp(now / defined, &times) == 0.5 && times > 0;
+}
+
+/* Whether coarsening can have made a mesh from that of the definition. */
+static bool is_mesh_of(const ilsa_mesh_def *now, const ilsa_mesh_def *defined) {
+    return now->nx == defined->nx && now->ny == defined->ny && is_coarsened(now->dx, defined->dx) &&
+           is_coarsened(now->dy, defined->dy) && ilsai_mesh_check(now, NULL) == ILSA_OK;
 }
 
 /* Flags that are none, as a bool must not be read from any byte, fail. */
@@ -173,7 +176,9 @@ static void write_body(stream *io, const ilsa_solver *s) {
     pace p = s->pace;
     box region = ilsai_fracture_region(&s->model.mesh, &f.footprint);
     int32_t paths = f.paths.count;
+    ilsa_mesh_def mesh = s->model.mesh;
     pass(io, &id, sizeof id);
+    pass(io, &mesh, sizeof mesh);
     pass_fracture(io, &f, &p);
     for (int k = 0; k < s->model.sources.count; k++) {
         ilsa_source_def def = s->model.sources.at[k].def;
@@ -329,7 +334,10 @@ static ilsa_status read_head(stream *io, const ilsa_solver *s, incoming *from) {
     from->model = s->model;
     from->model.stress = (cell_field){0};
     from->model.sigma = NULL;
-    from->model.mesh = (ilsa_mesh_def){id.nx, id.ny, id.dx, id.dy};
+    pass(io, &from->model.mesh, sizeof from->model.mesh);
+    if (io->failed || !is_mesh_of(&from->model.mesh, &s->model.defined)) {
+        return ILSA_ERR_SNAPSHOT;
+    }
     pass_fracture(io, &from->fracture, &from->pace);
     if (io->failed || !(from->pace.dt_limit > 0) ||
         !ilsai_snapshot_fracture_is_sound(&from->fracture, &from->model.mesh) ||

@@ -238,13 +238,13 @@ static double coarse_mean(line old, int i) {
     return centre;
 }
 
-static void coarsen_line(line old, double *new_value) {
+static void coarsen_line(line old, int factor, double *new_value) {
     for (int i = 0; i < old.count; i++) {
-        new_value[(size_t)i * old.step] = coarse_mean(old, i);
+        new_value[(size_t)i * old.step] = factor == 2 ? coarse_mean(old, i) : at(old, i);
     }
 }
 
-ilsa_status ilsai_cell_field_coarsen(cell_field *f) {
+ilsa_status ilsai_cell_field_coarsen(cell_field *f, int factor_x, int factor_y) {
     if (f->kind != FIELD_CELLS) {
         return ILSA_OK;
     }
@@ -255,14 +255,14 @@ ilsa_status ilsai_cell_field_coarsen(cell_field *f) {
         return ILSA_ERR_MEMORY;
     }
     for (size_t j = 0; j < (size_t)ny; j++) {
-        coarsen_line((line){f->values + j * width, 1, nx}, along_x + j * width);
+        coarsen_line((line){f->values + j * width, 1, nx}, factor_x, along_x + j * width);
     }
     for (size_t i = 0; i < width; i++) {
-        coarsen_line((line){along_x + i, width, ny}, f->values + i);
+        coarsen_line((line){along_x + i, width, ny}, factor_y, f->values + i);
     }
     ilsai_release(along_x);
-    f->mesh.dx *= 2;
-    f->mesh.dy *= 2;
+    f->mesh.dx *= factor_x;
+    f->mesh.dy *= factor_y;
     return ILSA_OK;
 }
 

@@ -50,11 +50,11 @@ ilsa_status ilsai_cell_field_fill(const cell_field *f, const char *name, const i
                                   double *out);
 
 /*
- * Takes a field per cell to cells twice as large, the same counts, around the origin: each takes
- * the area-weighted mean of the old cells it covers, or the nearest one's value beyond the old
- * mesh. Other fields need no change. ILSA_ERR_MEMORY, the field is then as it was.
+ * Takes a field per cell to cells that are larger by factors of 1 or 2, the same counts, around the
+ * origin: each takes the area-weighted mean of the old cells it covers, or the nearest one's value
+ * beyond the old mesh. Other fields need no change. ILSA_ERR_MEMORY, the field is then as it was.
  */
-ilsa_status ilsai_cell_field_coarsen(cell_field *f);
+ilsa_status ilsai_cell_field_coarsen(cell_field *f, int factor_x, int factor_y);
 
 /* Flat form for a snapshot, every byte of which is defined: its size, and writing it. */
 size_t ilsai_cell_field_flat_size(const cell_field *f);

@@ -18,7 +18,10 @@ void ilsai_model_set_viscosity(model *m, double mu_prime) {
 }
 
 ilsa_status ilsai_model_create(model *m, const ilsa_solver_def *def) {
-    *m = (model){.options = *def, .mesh = def->mesh->def, .material = def->material->def};
+    *m = (model){.options = *def,
+                 .defined = def->mesh->def,
+                 .mesh = def->mesh->def,
+                 .material = def->material->def};
     m->options.mesh = NULL;
     m->options.material = NULL;
     m->options.stress = NULL;

@@ -16,8 +16,9 @@
 
 typedef struct model {
     ilsa_solver_def
-        options;        /* as given, level = 0 replaced by its default; its pointers are NULL */
-    ilsa_mesh_def mesh; /* as it is now */
+        options;           /* as given, level = 0 replaced by its default; its pointers are NULL */
+    ilsa_mesh_def defined; /* the mesh as given */
+    ilsa_mesh_def mesh;    /* as it is now */
     ilsa_material_def material;     /* its viscosity is the fracture's once there is one */
     ilsa_material_def tip_material; /* without the processes that the tip model leaves out */
     bool inviscid;                  /* the material was given without viscosity */
