@@ -209,6 +209,12 @@ static ilsa_status coarsen(ilsa_solver *solver, const void *unused, double *answ
     return ilsa_coarsen(solver);
 }
 
+static ilsa_status grow(ilsa_solver *solver, const void *unused, double *answer) {
+    (void)unused;
+    *answer = 0;
+    return ilsa_grow(solver, 3, 2);
+}
+
 /* A step that has to coarsen the mesh first. */
 static ilsa_status step_at_the_edge(ilsa_solver *solver, const void *unused, double *answer) {
     (void)unused;
@@ -324,6 +330,7 @@ static void an_advance_goes_on_where_memory_failed(void **unused) {
 static void a_mesh_without_memory_stays_fine(void **unused) {
     (void)unused;
     sweep_scenes("coarsen", coarsen, 10, 0);
+    sweep_scenes("grow", grow, 10, 0);
 }
 
 /* The state from which the next step coarsens. */
@@ -352,13 +359,14 @@ static void an_edge_reached_without_memory_is_passed_later(void **unused) {
     }
 }
 
-/* From an image on a coarser mesh with another stress. */
+/* From an image on a larger and coarser mesh. */
 static void a_snapshot_without_memory_is_not_restored(void **unused) {
     (void)unused;
     for (int k = 0; k < SCENES; k++) {
         host_scene scene = scenes[k].make();
         host_image before = state_of(&scene, scenes[k].radius, 2);
         ilsa_solver *solver = host_started(&scene, scenes[k].wide);
+        assert_int_equal(ilsa_grow(solver, 2, 1), ILSA_OK);
         assert_int_equal(ilsa_coarsen(solver), ILSA_OK);
         host_image coarse = host_save(solver);
         ilsa_solver_destroy(&solver);

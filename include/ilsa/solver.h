@@ -88,6 +88,8 @@ typedef struct ilsa_solver_def {
     ilsa_linear_solver linear;      /* default ILSA_LINEAR_AUTO */
     ilsa_product product;           /* default ILSA_PRODUCT_AUTO */
     int coarsen;                    /* 1: ilsa_advance coarsens the mesh at its edge; default 0 */
+    int cells_max;        /* the most cells nx ny that the mesh may grow to, 1 .. 2^28; default 0:
+                             250000. The mesh of the definition is never too large */
     int threads;          /* 1 .. 64 that a step uses, the caller's included; default 0: as 1 */
     double step_cells;    /* front advance of a suggested step, in cells, 0.01 .. 1; 0: by level */
     double tolerance;     /* of the front, in cells, 1e-12 .. 0.1; 0: by level */
@@ -244,8 +246,20 @@ enum { ILSA_ALONG_X = 1, ILSA_ALONG_Y = 2 };
 ILSA_API ilsa_status ilsa_coarsen_along(ilsa_solver *solver, int directions);
 
 /*
- * Writes the mesh that the solver stands on now. Coarsening changes it, and so does a snapshot that
- * was taken on other cells. ILSA_ERR_NULL.
+ * Adds cells of the same size: `columns` on the left and as many on the right, `rows` below and as
+ * many above, so that the mesh stays around the origin, sources where they are, and symmetry what
+ * it is. The fracture stays as it is, bit for bit, and goes on as it would have on the larger mesh
+ * from the start. Layers of stress go on into the new cells; with a stress per cell each takes the
+ * value of the nearest cell that there was. Cells outside the fracture cost memory
+ * (docs/embedding.md) and no time. All pointers handed out before are invalid afterwards, and cells
+ * have other indices. ILSA_ERR_NULL, ILSA_ERR_STATE, ILSA_ERR_VALUE for a negative count or a mesh
+ * of more cells than cells_max or ilsa_mesh_create allows, ILSA_ERR_MEMORY.
+ */
+ILSA_API ilsa_status ilsa_grow(ilsa_solver *solver, int columns, int rows);
+
+/*
+ * Writes the mesh that the solver stands on now. Coarsening and growth change it, and so does a
+ * snapshot that was taken on other cells. ILSA_ERR_NULL.
  */
 ILSA_API ilsa_status ilsa_get_mesh_def(const ilsa_solver *solver, ilsa_mesh_def *def);
 

@@ -9,7 +9,7 @@
 #include "base/tuning.h"
 #include "model/mesh.h"
 #include "model/options.h"
-#include "step/solver.h"
+#include "step/mesh_arrays.h"
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
@@ -97,10 +97,17 @@ static bool is_coarsened(double now, double defined) {
     return frexp(now / defined, &times) == 0.5 && times > 0;
 }
 
-/* Whether coarsening can have made a mesh from that of the definition. */
-static bool is_mesh_of(const ilsa_mesh_def *now, const ilsa_mesh_def *defined) {
-    return now->nx == defined->nx && now->ny == defined->ny && is_coarsened(now->dx, defined->dx) &&
-           is_coarsened(now->dy, defined->dy) && ilsai_mesh_check(now, NULL) == ILSA_OK;
+/* Whether growth makes a count of cells from that of the definition: it adds to both sides. */
+static bool is_grown(int now, int defined) {
+    return now >= defined && (now - defined) % 2 == 0;
+}
+
+/* Whether coarsening and growth can have made a mesh from that of a model's definition. */
+static bool is_mesh_of(const ilsa_mesh_def *now, const model *m) {
+    return ilsai_mesh_check(now, NULL) == ILSA_OK && is_grown(now->nx, m->defined.nx) &&
+           is_grown(now->ny, m->defined.ny) && is_coarsened(now->dx, m->defined.dx) &&
+           is_coarsened(now->dy, m->defined.dy) &&
+           (double)ilsai_mesh_cells(now) <= ilsai_model_cells_max(m);
 }
 
 /* Flags that are none, as a bool must not be read from any byte, fail. */
@@ -252,6 +259,7 @@ typedef struct incoming {
     ilsa_source_def *sources;
     model model;         /* the solver's, with mesh, stress and sigma of the snapshot */
     elasticity *elastic; /* for another cell size, NULL where it is the solver's */
+    mesh_arrays arrays;  /* for other counts of cells, nothing where they are the solver's */
 } incoming;
 
 static void release(incoming *from) {
@@ -260,6 +268,7 @@ static void release(incoming *from) {
     ilsai_cell_field_clear(&from->model.stress);
     ilsai_release(from->model.sigma);
     ilsai_elasticity_destroy(&from->elastic);
+    ilsai_mesh_arrays_destroy(&from->arrays);
 }
 
 /* Rates change, places do not. */
@@ -335,7 +344,7 @@ static ilsa_status read_head(stream *io, const ilsa_solver *s, incoming *from) {
     from->model.stress = (cell_field){0};
     from->model.sigma = NULL;
     pass(io, &from->model.mesh, sizeof from->model.mesh);
-    if (io->failed || !is_mesh_of(&from->model.mesh, &s->model.defined)) {
+    if (io->failed || !is_mesh_of(&from->model.mesh, &s->model)) {
         return ILSA_ERR_SNAPSHOT;
     }
     pass_fracture(io, &from->fracture, &from->pace);
@@ -350,13 +359,15 @@ static ilsa_status read_head(stream *io, const ilsa_solver *s, incoming *from) {
 }
 
 /* The fields of the snapshot must fill what is left of it exactly, and be those of a fracture. */
-static bool fields_fit(const stream *io, const incoming *from, const box *region,
-                       const fields *own) {
-    stream count = {.at = io->at, .size = SIZE_MAX};
-    snapshot_fields seen = {io->in + io->at, *region, from->fracture.footprint,
-                            ilsai_model_leaks(&from->model)};
-    pass_fields(&count, &from->model, region, own);
-    return count.at == io->size && ilsai_snapshot_fields_are_sound(&seen);
+static bool fields_fit(const stream *io, const incoming *from, const box *region) {
+    bool leaks = ilsai_model_leaks(&from->model);
+    snapshot_fields seen = {io->in + io->at, *region, from->fracture.footprint, leaks};
+    size_t bytes = 0;
+    for (int row = 0; row < FIELD_COUNT; row++) {
+        bytes += ilsai_snapshot_has(row, leaks) ? ilsai_field_rows[row].size : 0;
+    }
+    return io->size - io->at == ilsai_box_columns(region) * ilsai_box_rows(region) * bytes &&
+           ilsai_snapshot_fields_are_sound(&seen);
 }
 
 /* Makes what the solver needs for the mesh and the stress of the snapshot. */
@@ -369,7 +380,10 @@ static ilsa_status prepare(const ilsa_solver *s, incoming *from) {
     if (ilsai_model_fill_stress(&from->model) != ILSA_OK) {
         return ILSA_ERR_SNAPSHOT; /* a stress per cell of another mesh, or beyond any */
     }
-    if (ilsai_mesh_same(mesh, &s->model.mesh)) {
+    if (mesh->nx != s->model.mesh.nx || mesh->ny != s->model.mesh.ny) {
+        ILSAI_TRY(ilsai_mesh_arrays_create(&from->arrays, mesh, ilsai_model_leaks(&s->model)));
+    }
+    if (mesh->dx == s->model.mesh.dx && mesh->dy == s->model.mesh.dy) {
         return ILSA_OK;
     }
     return ilsai_elasticity_create(s->model.material.E_prime, mesh->dx, mesh->dy,
@@ -385,6 +399,9 @@ static void adopt(ilsa_solver *s, incoming *from, const box *region, stream *io)
         elasticity *old_elastic = s->numerics.elastic;
         s->numerics.elastic = from->elastic;
         from->elastic = old_elastic;
+    }
+    if (from->arrays.coupled) {
+        ilsai_mesh_arrays_exchange(&from->arrays, s);
     }
     from->fracture.cells = s->fracture.cells;
     s->fracture = from->fracture;
@@ -403,7 +420,7 @@ static void adopt(ilsa_solver *s, incoming *from, const box *region, stream *io)
 static ilsa_status restore(ilsa_solver *s, stream *io, incoming *from) {
     ILSAI_TRY(read_head(io, s, from));
     box region = ilsai_fracture_region(&from->model.mesh, &from->fracture.footprint);
-    if (!fields_fit(io, from, &region, &s->fracture.cells)) {
+    if (!fields_fit(io, from, &region)) {
         return ILSA_ERR_SNAPSHOT;
     }
     ILSAI_TRY(prepare(s, from));

@@ -191,6 +191,8 @@
 #define ILSAI_START_CELLS 2.0
 /* A footprint must have this many new cells across to be coarsened. */
 #define ILSAI_COARSEN_LEAST 4
+/* The cells that a mesh may grow to where the definition does not say. */
+#define ILSAI_GROW_CELLS 250000.0
 /* Distances are measured anew this far behind the survey cells, in diagonals of the new cells. */
 #define ILSAI_COARSEN_REACH 3.0
 

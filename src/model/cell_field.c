@@ -202,7 +202,8 @@ ilsa_status ilsai_cell_field_fill(const cell_field *f, const char *name, const i
     return ILSA_OK;
 }
 
-/* ---- Coarsening --------------------------------------------------------------------------- */
+/* ---- Coarsening and growth
+ * --------------------------------------------------------------------------- */
 
 /* One line of equally spaced values in memory. */
 typedef struct line {
@@ -263,6 +264,28 @@ ilsa_status ilsai_cell_field_coarsen(cell_field *f, int factor_x, int factor_y) 
     ilsai_release(along_x);
     f->mesh.dx *= factor_x;
     f->mesh.dy *= factor_y;
+    return ILSA_OK;
+}
+
+ilsa_status ilsai_cell_field_grow(cell_field *f, int columns, int rows) {
+    if (f->kind != FIELD_CELLS) {
+        return ILSA_OK;
+    }
+    const ilsa_mesh_def old = f->mesh, mesh = ilsai_mesh_grown(&old, columns, rows);
+    double *values = ilsai_allocate(ilsai_mesh_cells(&mesh), sizeof *values);
+    if (!values) {
+        return ILSA_ERR_MEMORY;
+    }
+    for (int j = 0; j < mesh.ny; j++) {
+        size_t from = (size_t)(j < rows ? 0 : j - rows < old.ny ? j - rows : old.ny - 1);
+        line row = {f->values + from * (size_t)old.nx, 1, old.nx};
+        for (int i = 0; i < mesh.nx; i++) {
+            values[(size_t)j * (size_t)mesh.nx + (size_t)i] = at(row, i - columns);
+        }
+    }
+    ilsai_release(f->values);
+    f->values = values;
+    f->mesh = mesh;
     return ILSA_OK;
 }
 

@@ -56,6 +56,13 @@ ilsa_status ilsai_cell_field_fill(const cell_field *f, const char *name, const i
  */
 ilsa_status ilsai_cell_field_coarsen(cell_field *f, int factor_x, int factor_y);
 
+/*
+ * Takes a field per cell to a mesh with columns more on either side and rows more below and above,
+ * each of which takes the value of the nearest cell. Other fields need no change. ILSA_ERR_MEMORY,
+ * the field is then as it was.
+ */
+ilsa_status ilsai_cell_field_grow(cell_field *f, int columns, int rows);
+
 /* Flat form for a snapshot, every byte of which is defined: its size, and writing it. */
 size_t ilsai_cell_field_flat_size(const cell_field *f);
 void ilsai_cell_field_write(const cell_field *f, unsigned char *flat);
