@@ -240,8 +240,8 @@ static void bad_calls_are_refused(void **unused) {
     ilsa_solver_destroy(&solver);
     scene.options.cells_max = 0;
     solver = host_started(&scene, 0.9);
-    check_refused(solver, 300, 300, "cells_max allows 250000");
-    grow(solver, 200, 200);
+    check_refused(solver, 300, 300, "cells_max allows 100000");
+    grow(solver, 130, 130);
     ilsa_solver_destroy(&solver);
 }
 

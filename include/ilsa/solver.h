@@ -87,9 +87,10 @@ typedef struct ilsa_solver_def {
     ilsa_front_loop loop;           /* default ILSA_LOOP_COUPLED */
     ilsa_linear_solver linear;      /* default ILSA_LINEAR_AUTO */
     ilsa_product product;           /* default ILSA_PRODUCT_AUTO */
-    int coarsen;                    /* 1: ilsa_advance coarsens the mesh at its edge; default 0 */
+    int coarsen;                    /* 1: ilsa_advance coarsens or grows the mesh at its edge, see
+                                       ilsa_advance_one; default 0 */
     int cells_max;        /* the most cells nx ny that the mesh may grow to, 1 .. 2^28; default 0:
-                             250000. The mesh of the definition is never too large */
+                             100000. The mesh of the definition is never too large */
     int threads;          /* 1 .. 64 that a step uses, the caller's included; default 0: as 1 */
     double step_cells;    /* front advance of a suggested step, in cells, 0.01 .. 1; 0: by level */
     double tolerance;     /* of the front, in cells, 1e-12 .. 0.1; 0: by level */
@@ -169,10 +170,12 @@ typedef struct ilsa_report {
     long newton_iterations;   /* linear systems solved */
     long krylov_iterations;   /* GMRES iterations */
     long elasticity_products; /* products with the elasticity matrix */
-    long coarsened;           /* times the mesh was coarsened */
-    double front_change;      /* last change of the front in the last step, in cells */
-    double front_advance;     /* largest advance of the front in the last step, in cells */
-    double seconds;           /* wall time */
+    long coarsened;           /* times the mesh was coarsened at its edge, along x, y or both */
+    long coarsened_x, coarsened_y; /* times along x, times along y */
+    long grown;                    /* times cells were added there */
+    double front_change;           /* last change of the front in the last step, in cells */
+    double front_advance;          /* largest advance of the front in the last step, in cells */
+    double seconds;                /* wall time */
 } ilsa_report;
 
 /*
@@ -204,10 +207,23 @@ ILSA_API ilsa_status ilsa_suggest_dt(const ilsa_solver *solver, double *dt);
 /*
  * Takes one accepted step of the solver's own choice, which does not pass t_limit > time; the last
  * one before t_limit lands exactly on it. A rejected step is tried again with half of its length.
- * The mesh is coarsened at its edge if the definition says so; it stays so if no step is accepted
- * afterwards, and any other failure leaves the solver as it was.
+ *
+ * With coarsen = 1 of the definition it makes room at the edge of the mesh, and the report says
+ * what it did. The first of these that can be done is:
+ * - to coarsen both directions, or the one that is full, where 10 of the new cells stay across half
+ *   of the footprint and, along y, across the layer of stress that a source is in; cells become at
+ *   most 4 to 1 oblong so, and 3 of the longer ones stay across footprint and layer;
+ * - to add cells in the full directions, as many as there are, or as cells_max allows;
+ * - to coarsen both directions where 10 cells stay across half of the footprint, though not across
+ *   the layer;
+ * - to add cells in the full direction and take as many away in the other, far from the footprint,
+ *   if the stress is not per cell;
+ * - to coarsen the full direction, as ilsa_coarsen_along can.
+ * Where nothing is left the status is ILSA_MESH_EDGE. The mesh stays what it became if no step is
+ * accepted afterwards, and any other failure leaves the solver as it was.
+ *
  * ILSA_STALLED when steps are refused down to 1e-12 of the time, or 400 of them while the time
- * grows by a tenth; and the statuses of ilsa_step and ilsa_coarsen.
+ * grows by a tenth; and the statuses of ilsa_step.
  */
 ILSA_API ilsa_status ilsa_advance_one(ilsa_solver *solver, double t_limit, ilsa_report *report);
 

@@ -97,16 +97,20 @@ static bool is_coarsened(double now, double defined) {
     return frexp(now / defined, &times) == 0.5 && times > 0;
 }
 
-/* Whether growth makes a count of cells from that of the definition: it adds to both sides. */
-static bool is_grown(int now, int defined) {
-    return now >= defined && (now - defined) % 2 == 0;
+/* Whether every source is on a mesh, which may have lost cells. */
+static bool has_sources(const ilsa_mesh_def *mesh, const sources *s) {
+    bool all = true;
+    for (int k = 0; k < s->count; k++) {
+        all = all && ilsai_source_check(mesh, &s->at[k].def, NULL) == ILSA_OK;
+    }
+    return all;
 }
 
 /* Whether coarsening and growth can have made a mesh from that of a model's definition. */
 static bool is_mesh_of(const ilsa_mesh_def *now, const model *m) {
-    return ilsai_mesh_check(now, NULL) == ILSA_OK && is_grown(now->nx, m->defined.nx) &&
-           is_grown(now->ny, m->defined.ny) && is_coarsened(now->dx, m->defined.dx) &&
-           is_coarsened(now->dy, m->defined.dy) &&
+    return ilsai_mesh_check(now, NULL) == ILSA_OK && (now->nx - m->defined.nx) % 2 == 0 &&
+           (now->ny - m->defined.ny) % 2 == 0 && has_sources(now, &m->sources) &&
+           is_coarsened(now->dx, m->defined.dx) && is_coarsened(now->dy, m->defined.dy) &&
            (double)ilsai_mesh_cells(now) <= ilsai_model_cells_max(m);
 }
 

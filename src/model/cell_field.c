@@ -135,6 +135,22 @@ static int first_layer(const cell_field *f, double y0) {
     return low;
 }
 
+double ilsai_cell_field_layer(const cell_field *f, double y) {
+    if (f->kind != FIELD_LAYERS) {
+        return INFINITY;
+    }
+    const double *interface_y = f->values, *value = interface_y + f->interfaces;
+    int first = first_layer(f, y), last = first;
+    while (first > 0 && value[first - 1] == value[first]) {
+        first--;
+    }
+    while (last < f->interfaces && value[last + 1] == value[last]) {
+        last++;
+    }
+    return first > 0 && last < f->interfaces ? interface_y[last] - interface_y[first - 1]
+                                             : INFINITY;
+}
+
 /*
  * Mean of the layers over y0 .. y1. Summed outwards from the origin, so that mirrored layers give
  * the same bits in mirrored cells; a cell in one layer takes its value as it stands.

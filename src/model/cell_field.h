@@ -49,6 +49,10 @@ bool ilsai_cell_field_varies(const cell_field *f);
 ilsa_status ilsai_cell_field_fill(const cell_field *f, const char *name, const ilsa_mesh_def *mesh,
                                   double *out);
 
+/* The height of the layer that holds y, with neighbours of its value; infinite where it has no end,
+ * and where there are no layers. */
+double ilsai_cell_field_layer(const cell_field *f, double y);
+
 /*
  * Takes a field per cell to cells that are larger by factors of 1 or 2, the same counts, around the
  * origin: each takes the area-weighted mean of the old cells it covers, or the nearest one's value

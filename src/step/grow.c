@@ -2,6 +2,8 @@
  * The fracture moved to a mesh of more cells of the same size, as many on either side, so that the
  * origin stays where it is. Each cell keeps what it holds, bit for bit.
  */
+#include "step/grow.h"
+
 #include "base/memory.h"
 #include "model/mesh.h"
 #include "step/mesh_arrays.h"
@@ -9,7 +11,7 @@
 
 /* The larger mesh while it is being made. */
 typedef struct grown {
-    int columns, rows; /* added on either side */
+    int columns, rows; /* added on either side; negative: taken away */
     model model;       /* the solver's, with mesh, stress and sigma of its own */
     mesh_arrays arrays;
 } grown;
@@ -18,7 +20,15 @@ static int moved(const grown *g, int nx, int cell) {
     return (cell / nx + g->rows) * g->model.mesh.nx + cell % nx + g->columns;
 }
 
-/* Copies the cells that the fracture may have touched. */
+/* The cells that the fracture may have touched, as far as they are on both meshes. */
+static box common_region(const grown *g, const ilsa_solver *s) {
+    const ilsa_mesh_def *mesh = &s->model.mesh;
+    box b = ilsai_fracture_region(mesh, &s->fracture.footprint);
+    box common = {-g->columns, mesh->nx - 1 + g->columns, -g->rows, mesh->ny - 1 + g->rows};
+    return (box){b.x0 > common.x0 ? b.x0 : common.x0, b.x1 < common.x1 ? b.x1 : common.x1,
+                 b.y0 > common.y0 ? b.y0 : common.y0, b.y1 < common.y1 ? b.y1 : common.y1};
+}
+
 static void copy_fields(const grown *g, const fields *from, int nx, const box *region) {
     for (int row = 0; row < FIELD_COUNT; row++) {
         const char *source = ilsai_field(from, row);
@@ -48,7 +58,7 @@ static ilsa_status make(grown *g, const ilsa_solver *s) {
 static void exchange(ilsa_solver *s, grown *g) {
     fracture *f = &s->fracture;
     int nx = s->model.mesh.nx;
-    box region = ilsai_fracture_region(&s->model.mesh, &f->footprint);
+    box region = common_region(g, s);
     copy_fields(g, &f->cells, nx, &region);
     for (int k = 0; k < f->paths.count; k++) {
         f->paths.at[k].cell = moved(g, nx, f->paths.at[k].cell);
@@ -82,20 +92,24 @@ static ilsa_status check(ilsa_solver *s, int columns, int rows) {
     return ILSA_OK;
 }
 
+ilsa_status ilsai_grow_mesh(ilsa_solver *s, int columns, int rows) {
+    grown g = {.columns = columns, .rows = rows, .model = s->model};
+    g.model.mesh = ilsai_mesh_grown(&s->model.mesh, columns, rows);
+    g.model.stress = (cell_field){0};
+    g.model.sigma = NULL;
+    ilsa_status status = make(&g, s);
+    if (status == ILSA_OK) {
+        exchange(s, &g);
+    }
+    release(&g);
+    return status == ILSA_OK ? ILSA_OK
+                             : ilsai_fail(&s->error, status, "no memory for a larger mesh");
+}
+
 ilsa_status ilsa_grow(ilsa_solver *solver, int columns, int rows) {
     if (!solver) {
         return ilsai_check_pointer(ilsai_thread_error(), "solver", solver);
     }
     ILSAI_TRY(check(solver, columns, rows));
-    grown g = {.columns = columns, .rows = rows, .model = solver->model};
-    g.model.mesh = ilsai_mesh_grown(&solver->model.mesh, columns, rows);
-    g.model.stress = (cell_field){0};
-    g.model.sigma = NULL;
-    ilsa_status status = make(&g, solver);
-    if (status == ILSA_OK) {
-        exchange(solver, &g);
-    }
-    release(&g);
-    return status == ILSA_OK ? ILSA_OK
-                             : ilsai_fail(&solver->error, status, "no memory for a larger mesh");
+    return ilsai_grow_mesh(solver, columns, rows);
 }
