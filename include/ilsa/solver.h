@@ -212,7 +212,7 @@ ILSA_API ilsa_status ilsa_suggest_dt(const ilsa_solver *solver, double *dt);
  * what it did. The first of these that can be done is:
  * - to coarsen both directions, or the one that is full, where 10 of the new cells stay across half
  *   of the footprint and, along y, across the layer of stress that a source is in; cells become at
- *   most 4 to 1 oblong so, and 3 of the longer ones stay across footprint and layer;
+ *   most 4 to 1 oblong so, and 5 of the longer ones stay across the footprint;
  * - to add cells in the full directions, as many as there are, or as cells_max allows;
  * - to coarsen both directions where 10 cells stay across half of the footprint, though not across
  *   the layer;

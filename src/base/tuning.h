@@ -197,10 +197,10 @@
  * across the layer of a source. */
 #define ILSAI_EDGE_CELLS_ACROSS 10.0
 /* The ratio of sides up to which cells are coarsened along one direction alone, and the cells of
- * that length which must stay across the footprint the other way. With 8 to 1 a half-length is 0.8
- * % off, with one cell and a half across a layer no step was accepted. */
+ * that length which must stay across the footprint the other way. Sides of 8 to 1 put a half-length
+ * off by 0.8 %, and with four and a half cells across a footprint no step was accepted. */
 #define ILSAI_EDGE_OBLONG     4.0
-#define ILSAI_EDGE_LENGTHWISE 3.0
+#define ILSAI_EDGE_LENGTHWISE 5.0
 /* The free cells of a direction that counts as full; the fewest cells worth being added on a side;
  * the fewest that stay beside the footprint where others are taken away. */
 #define ILSAI_EDGE_FREE  3

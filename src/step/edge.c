@@ -48,16 +48,14 @@ static bool leaves_enough_y(const ilsa_solver *s) {
            layer_of_sources(&s->model) >= ILSAI_EDGE_CELLS_ACROSS * 2 * s->model.mesh.dy;
 }
 
-/* Whether cells twice as long along one axis alone are not too oblong, and still tell the front
- * that runs along it: its radius of curvature is some half of the footprint's width, or of the
- * layer's. */
+/* Whether cells twice as long along one axis alone are not too oblong, and short enough for the
+ * front that runs along it: its radius of curvature is some half of the footprint's width. */
 static bool may_be_oblong(const ilsa_solver *s, int direction) {
     const ilsa_mesh_def *m = &s->model.mesh;
     const box *b = &s->fracture.footprint;
     bool x = direction == ILSA_ALONG_X;
     double length = 2 * (x ? m->dx : m->dy), other = x ? m->dy : m->dx;
-    double width = x ? fmin((b->y1 - b->y0 + 1) * m->dy, layer_of_sources(&s->model))
-                     : (b->x1 - b->x0 + 1) * m->dx;
+    double width = x ? (b->y1 - b->y0 + 1) * m->dy : (b->x1 - b->x0 + 1) * m->dx;
     return length <= ILSAI_EDGE_OBLONG * other && width >= ILSAI_EDGE_LENGTHWISE * length;
 }
 
