@@ -219,6 +219,37 @@ static double jump(double before, double after) {
     return fabs(after / before - 1);
 }
 
+/*
+ * A fracture between barriers 6 m apart that outgrows 17 columns: on 261 x 61 cells from the start
+ * it comes to x = 38.27 m, with 0.5143 mm and 2.7133 MPa at the source.
+ */
+static void a_fracture_of_one_height_runs_on_along_x(void **unused) {
+    (void)unused;
+    const ilsa_rock rock = {.E = 3.3e10, .nu = 0.4, .mu = 1.1e-3, .K_Ic = 0, .C_L = 0};
+    host_scene scene = {.mesh = {17, 35, 0.3235294, 0.1371428}, .source_count = 1};
+    scene.source[0].rate = 0.001;
+    scene.interfaces = 2;
+    scene.interface_y[0] = -3;
+    scene.interface_y[1] = 3;
+    scene.sigma[0] = scene.sigma[2] = 7.5e6;
+    scene.sigma[1] = 1e6;
+    scene.options = ilsa_solver_def_default();
+    scene.options.coarsen = 1;
+    assert_int_equal(ilsa_material_def_from_rock(&rock, &scene.material), ILSA_OK);
+    ilsa_solver *solver = host_started(&scene, 1);
+    ilsa_report report;
+    assert_int_equal(ilsa_advance(solver, 145, &report), ILSA_OK);
+    assert_true(report.grown > 0 && report.coarsened_x > 0);
+    ilsa_summary end = host_summary(solver);
+    print_message("edge: x %.2f m, width %.4f mm, pressure %.4f MPa\n", end.x_max,
+                  1e3 * end.width_source, 1e-6 * end.pressure_source);
+    assert_true(jump(38.27, end.x_max) < 0.01); /* 0.4 % */
+    assert_true(jump(0.5143e-3, end.width_source) < 0.01);
+    assert_true(jump(2.7133e6, end.pressure_source) < 0.005);
+    assert_true(6 / mesh_of(solver).dy > 10);
+    ilsa_solver_destroy(&solver);
+}
+
 /* Rock and rates of the field: `what` is 0 viscosity, 1 toughness, 2 leak-off, 3 a pay between
  * barriers, 4 leak-off and shut in, 5 a pay with leak-off and shut in. */
 enum { STATES = 6 };
@@ -304,6 +335,7 @@ int main(void) {
         cmocka_unit_test(layers_of_one_stress_are_one),
         cmocka_unit_test(cells_max_is_kept),
         cmocka_unit_test(idle_rows_become_columns),
+        cmocka_unit_test(a_fracture_of_one_height_runs_on_along_x),
         cmocka_unit_test(where_nothing_is_left_it_is_said),
         cmocka_unit_test(nothing_jumps_and_the_next_step_is_accepted),
     };
