@@ -24,7 +24,8 @@ static int full_directions(const ilsa_solver *s) {
 
 /* Cells across half of the footprint along one axis on cells twice as large. */
 static double coarser_half(int first, int last) {
-    return 0.5 * ((last - first + 2) / 2);
+    int across = (last - first + 2) / 2;
+    return 0.5 * across;
 }
 
 /* The height of the thinnest layer of stress with a source in it. */
