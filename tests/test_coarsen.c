@@ -409,6 +409,130 @@ static void symmetric_states_stay_symmetric(void **unused) {
     }
 }
 
+/* Along one direction */
+
+static void coarsen_along(ilsa_solver *solver, int directions) {
+    assert_int_equal(ilsa_coarsen_along(solver, directions), ILSA_OK);
+}
+
+/* Cells become longer along the direction asked for alone, and what was in them stays. */
+static void one_direction_is_coarsened_alone(void **unused) {
+    (void)unused;
+    double worst = NOTHING_YET;
+    for (int which = 0; which < SCENES; which++)
+        for (int direction = ILSA_ALONG_X; direction <= ILSA_ALONG_Y; direction++) {
+            host_scene scene = scene_of(which);
+            ilsa_solver *solver = host_started(&scene, 0.9);
+            host_steps(solver, 4);
+            ilsa_summary before = host_summary(solver);
+            double width = sum(solver, solver->fracture.cells.width);
+            double leaked = sum(solver, solver->fracture.cells.leaked);
+            coarsen_along(solver, direction);
+            ilsa_mesh_def mesh;
+            assert_int_equal(ilsa_get_mesh_def(solver, &mesh), ILSA_OK);
+            assert_true(mesh.nx == scene.mesh.nx && mesh.ny == scene.mesh.ny);
+            assert_true(mesh.dx == scene.mesh.dx * (direction == ILSA_ALONG_X ? 2 : 1));
+            assert_true(mesh.dy == scene.mesh.dy * (direction == ILSA_ALONG_Y ? 2 : 1));
+            worst = worst_of(worst, fabs(sum(solver, solver->fracture.cells.width) / width - 1));
+            if (leaked > 0)
+                worst =
+                    worst_of(worst, fabs(sum(solver, solver->fracture.cells.leaked) / leaked - 1));
+            ilsa_summary now = host_summary(solver);
+            assert_true(now.volume_fracture == before.volume_fracture && now.time == before.time);
+            assert_true(fabs(now.extent_x_max / before.extent_x_max - 1) < 0.01);
+            assert_true(fabs(now.extent_y_max / before.extent_y_max - 1) < 0.01);
+            host_steps(solver, 2);
+            assert_true(fabs(host_imbalance(solver)) <= 1e-12);
+            ilsa_solver_destroy(&solver);
+        }
+    print_message("coarsen: along one direction: volumes off by %.1e\n", worst);
+    assert_below(worst, 1e-14);
+}
+
+/* Levels, trigger times and their spread: against a penny laid on the oblong cells at once. */
+static void one_direction_finds_the_front(void **unused) {
+    (void)unused;
+    for (int n = 0; n < 4; n++) {
+        int along_x = n % 2 == 0;
+        pair p = {.scene = host_penny(1, 40 + n / 2, 0.05)};
+        p.coarsened = host_started(&p.scene, 0.8);
+        coarsen_along(p.coarsened, along_x ? ILSA_ALONG_X : ILSA_ALONG_Y);
+        *(along_x ? &p.scene.mesh.dx : &p.scene.mesh.dy) *= 2;
+        p.direct = host_started(&p.scene, 0.8);
+        const fields *a = &p.coarsened->fracture.cells, *b = &p.direct->fracture.cells;
+        double level = NOTHING_YET, spread = NOTHING_YET, trigger = NOTHING_YET;
+        double time = host_summary(p.direct).time, h = 0.05;
+        int passed = 0;
+        for (int k = 0; k < p.scene.mesh.nx * p.scene.mesh.ny; k++) {
+            if (fabs(b->level[k]) < 3 * h)
+                level = worst_of(level, fabs(a->level[k] - b->level[k]) / h);
+            if (a->kind[k] < ILSA_CELL_SURVEY || b->kind[k] < ILSA_CELL_SURVEY)
+                continue;
+            double r = hypot(ilsai_mesh_x(&p.scene.mesh, k % p.scene.mesh.nx),
+                             ilsai_mesh_y(&p.scene.mesh, k / p.scene.mesh.nx));
+            trigger = worst_of(trigger, fabs(a->trigger[k] - b->trigger[k]) / time);
+            if (r > 0.2) { /* further in the fracture passed a cell in a time like its age */
+                spread = worst_of(spread, fabs(a->spread[k] / b->spread[k] - 1));
+                passed++;
+            }
+        }
+        print_message("coarsen: along %s: levels off by %.3f cells, trigger times by %.1e of the "
+                      "time, spreads by %.2f\n",
+                      along_x ? "x" : "y", level, trigger, spread);
+        assert_true(passed > 150);
+        assert_below(level, 0.1);
+        assert_below(trigger, 0.02);
+        assert_below(spread, 0.3);
+        release(&p);
+    }
+}
+
+/* A penny grows on as it would on square cells, on cells of 2 to 1 and of 1 to 2. */
+static void one_direction_goes_on(void **unused) {
+    (void)unused;
+    csv_table *table = csv_read("tests/data/radial_history.csv");
+    for (int n = 0; n < 4; n++) {
+        double phi = n < 2 ? 1e-2 : 1;
+        host_scene scene = host_penny(phi, 71, 0.04);
+        ilsa_solver *solver = host_started(&scene, 0.6);
+        while (host_summary(solver).extent_x_max < 1)
+            host_steps(solver, 1);
+        coarsen_along(solver, n % 2 ? ILSA_ALONG_X : ILSA_ALONG_Y);
+        while (host_summary(solver).extent_x_max < 1.2)
+            host_steps(solver, 1);
+        ilsa_summary now = host_summary(solver);
+        double R = interpolate(table, phi, now.time, "R");
+        double efficiency = interpolate(table, phi, now.time, "efficiency");
+        print_message("coarsen: one direction, phi %g: R off by %.2f %% and %.2f %%\n", phi,
+                      100 * (now.extent_x_max / R - 1), 100 * (now.extent_y_max / R - 1));
+        assert_true(fabs(now.extent_x_max / R - 1) < 0.01);
+        assert_true(fabs(now.extent_y_max / R - 1) < 0.01);
+        assert_true(fabs(now.efficiency - efficiency) < 0.01);
+        ilsa_solver_destroy(&solver);
+    }
+    csv_free(table);
+}
+
+static void symmetric_states_stay_symmetric_along_one(void **unused) {
+    (void)unused;
+    for (int n = 0; n < 4; n++) {
+        host_scene scene = host_penny(1, 50 + n % 2, 0.05);
+        ilsa_solver *solver = host_started(&scene, 0.6);
+        host_steps(solver, 6);
+        coarsen_along(solver, n / 2 ? ILSA_ALONG_X : ILSA_ALONG_Y);
+        for (int k = 0; k < 3; k++) {
+            ilsa_model used;
+            assert_int_equal(ilsa_get_model(solver, &used), ILSA_OK);
+            assert_int_equal(used.symmetry, ILSA_SYMMETRY_XY);
+            assert_true(mirrors(solver, solver->fracture.cells.width));
+            assert_true(mirrors(solver, solver->fracture.cells.trigger));
+            assert_true(mirrors(solver, solver->fracture.cells.spread));
+            host_steps(solver, 1);
+        }
+        ilsa_solver_destroy(&solver);
+    }
+}
+
 /* Refused */
 
 static void bad_calls_are_refused(void **unused) {
@@ -438,6 +562,34 @@ static void bad_calls_are_refused(void **unused) {
     ilsa_solver_destroy(&solver);
 }
 
+static void directions_that_are_none_are_refused(void **unused) {
+    (void)unused;
+    static const int none[] = {0, -1, 4, 7};
+    host_scene scene = host_penny(1, 41, 0.1);
+    ilsa_solver *solver = host_solver(&scene);
+    assert_int_equal(ilsa_coarsen_along(NULL, ILSA_ALONG_X), ILSA_ERR_NULL);
+    assert_int_equal(ilsa_coarsen_along(solver, ILSA_ALONG_X), ILSA_ERR_STATE);
+    assert_int_equal(ilsa_start_radial(solver, 0.9), ILSA_OK);
+    host_image before = host_save(solver);
+    for (size_t k = 0; k < sizeof none / sizeof *none; k++) {
+        assert_int_equal(ilsa_coarsen_along(solver, none[k]), ILSA_ERR_VALUE);
+        check_message(ilsa_last_error(solver), "directions = ");
+        assert_true(host_is(solver, &before));
+    }
+    coarsen_along(solver, ILSA_ALONG_X);
+    host_free(&before);
+    before = host_save(solver);
+    /* Along x there are 10 cells, then 6. */
+    while (ilsa_coarsen_along(solver, ILSA_ALONG_X) == ILSA_OK) {
+        host_free(&before);
+        before = host_save(solver);
+    }
+    check_message(ilsa_last_error(solver), "cells across");
+    assert_true(host_is(solver, &before));
+    host_free(&before);
+    ilsa_solver_destroy(&solver);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(volumes_are_kept),
@@ -451,7 +603,12 @@ int main(void) {
         cmocka_unit_test(growth_goes_on),
         cmocka_unit_test(advance_coarsens_only_if_told),
         cmocka_unit_test(symmetric_states_stay_symmetric),
+        cmocka_unit_test(one_direction_is_coarsened_alone),
+        cmocka_unit_test(one_direction_finds_the_front),
+        cmocka_unit_test(one_direction_goes_on),
+        cmocka_unit_test(symmetric_states_stay_symmetric_along_one),
         cmocka_unit_test(bad_calls_are_refused),
+        cmocka_unit_test(directions_that_are_none_are_refused),
     };
     return cmocka_run_group_tests_name("coarsen", tests, NULL, NULL);
 }

@@ -509,7 +509,7 @@ static void coarse_cells_are_means_of_old_ones(void **state) {
             double old[144], new[144];
             ilsa_stress *stress = make_cells(def);
             fill(stress, &def, old);
-            assert_int_equal(ilsai_cell_field_coarsen(&stress->field), ILSA_OK);
+            assert_int_equal(ilsai_cell_field_coarsen(&stress->field, 2, 2), ILSA_OK);
             fill(stress, &twice, new);
             double worst = NOTHING_YET;
             for (int j = 0; j < ny; j++)
@@ -535,13 +535,13 @@ static void coarsening_keeps_a_constant_and_symmetry(void **state) {
         for (int k = 0; k < n * n; k++)
             sigma[k] = 1.1;
         assert_int_equal(ilsa_stress_set_cells(stress, mesh, sigma), ILSA_OK);
-        assert_int_equal(ilsai_cell_field_coarsen(&stress->field), ILSA_OK);
+        assert_int_equal(ilsai_cell_field_coarsen(&stress->field, 2, 2), ILSA_OK);
         assert_false(ilsai_cell_field_varies(&stress->field));
         for (int j = 0; j < n; j++)
             for (int i = 0; i < n; i++)
                 sigma[j * n + i] = sin(abs(2 * i - n + 1)) + cos(0.3 * abs(2 * j - n + 1));
         assert_int_equal(ilsa_stress_set_cells(stress, mesh, sigma), ILSA_OK);
-        assert_int_equal(ilsai_cell_field_coarsen(&stress->field), ILSA_OK);
+        assert_int_equal(ilsai_cell_field_coarsen(&stress->field, 2, 2), ILSA_OK);
         fill(stress, &twice, sigma);
         for (int j = 0; j < n; j++)
             for (int i = 0; i < n; i++) {
@@ -557,7 +557,7 @@ static void coarsening_leaves_other_fields(void **state) {
     (void)state;
     double y[] = {0.5}, layer[] = {4, 8}, sigma[CELLS];
     ilsa_stress *stress = make_layers(1, y, layer);
-    assert_int_equal(ilsai_cell_field_coarsen(&stress->field), ILSA_OK);
+    assert_int_equal(ilsai_cell_field_coarsen(&stress->field, 2, 2), ILSA_OK);
     fill(stress, &mesh_def, sigma);
     assert_true(sigma[2L * NX] == 4 && sigma[3L * NX] == 6 && sigma[4L * NX] == 8);
     ilsa_stress_destroy(&stress);
@@ -686,7 +686,7 @@ static void stress_survives_no_memory(void **state) {
     allocations_left = 0;
     ilsa_status c = ilsa_stress_set_layers(stress, 1, y, layer);
     ilsa_status d = ilsa_stress_set_cells(stress, mesh, cells);
-    ilsa_status e = ilsai_cell_field_coarsen(&stress->field);
+    ilsa_status e = ilsai_cell_field_coarsen(&stress->field, 2, 2);
     allocations_left = -1;
     assert_true(c == ILSA_ERR_MEMORY && d == c && e == c);
     ilsai_cell_field_write(&stress->field, after);

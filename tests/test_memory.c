@@ -209,10 +209,16 @@ static ilsa_status coarsen(ilsa_solver *solver, const void *unused, double *answ
     return ilsa_coarsen(solver);
 }
 
-/* A step that has to coarsen the mesh first. */
+static ilsa_status grow(ilsa_solver *solver, const void *unused, double *answer) {
+    (void)unused;
+    *answer = 0;
+    return ilsa_grow(solver, 3, 2);
+}
+
+/* A step that has to coarsen or grow the mesh first. */
 static ilsa_status step_at_the_edge(ilsa_solver *solver, const void *unused, double *answer) {
     (void)unused;
-    *answer = 0; /* coarsening may be done when memory fails */
+    *answer = 0; /* the mesh may be another when memory fails */
     return ilsa_advance_one(solver, 1e300, NULL);
 }
 
@@ -324,41 +330,45 @@ static void an_advance_goes_on_where_memory_failed(void **unused) {
 static void a_mesh_without_memory_stays_fine(void **unused) {
     (void)unused;
     sweep_scenes("coarsen", coarsen, 10, 0);
+    sweep_scenes("grow", grow, 10, 0);
 }
 
-/* The state from which the next step coarsens. */
+/* The state from which the next step coarsens or grows the mesh. */
 static host_image at_the_edge(const named_scene *named, const host_scene *scene) {
     ilsa_solver *solver = host_started(scene, named->wide);
     host_image before = {NULL, 0};
     ilsa_report report = {0};
-    for (int k = 0; k < 30 && report.coarsened == 0; k++) {
+    for (int k = 0; k < 30 && report.coarsened + report.grown == 0; k++) {
         host_free(&before);
         before = host_save(solver);
         assert_int_equal(ilsa_advance_one(solver, 1e300, &report), ILSA_OK);
     }
-    assert_int_equal(report.coarsened, 1);
+    assert_true(scene->options.cells_max == 1 ? report.coarsened > 0 : report.grown == 1);
     ilsa_solver_destroy(&solver);
     return before;
 }
 
 static void an_edge_reached_without_memory_is_passed_later(void **unused) {
     (void)unused;
-    for (int k = first_of_long_sweep(); k < SCENES; k++) {
-        host_scene scene = scenes[k].make();
+    for (int k = 2 * first_of_long_sweep(); k < 2 * SCENES; k++) {
+        const named_scene *named = &scenes[k / 2];
+        host_scene scene = named->make();
         scene.options.coarsen = 1;
-        host_image before = at_the_edge(&scenes[k], &scene);
+        scene.options.cells_max = k % 2;
+        host_image before = at_the_edge(named, &scene);
         sweep(&(trial){"edge", &scene, &before, step_at_the_edge, NULL, 1}, 30);
         host_free(&before);
     }
 }
 
-/* From an image on a coarser mesh with another stress. */
+/* From an image on a larger and coarser mesh. */
 static void a_snapshot_without_memory_is_not_restored(void **unused) {
     (void)unused;
     for (int k = 0; k < SCENES; k++) {
         host_scene scene = scenes[k].make();
         host_image before = state_of(&scene, scenes[k].radius, 2);
         ilsa_solver *solver = host_started(&scene, scenes[k].wide);
+        assert_int_equal(ilsa_grow(solver, 2, 1), ILSA_OK);
         assert_int_equal(ilsa_coarsen(solver), ILSA_OK);
         host_image coarse = host_save(solver);
         ilsa_solver_destroy(&solver);

@@ -170,7 +170,7 @@ static const bad_scene scenes[] = {
      "symmetry = y\n[stress]\nsigma = 7e6, 8e6\ninterfaces = 1\n",
      "12: [mesh] symmetry: must be one that stress and sources have, or auto..."},
     {"mesh: unknown key", "dy = 1\n", "dz = 1\n",
-     "11: [mesh] dz = 1: unknown key; must be one of nx, ny, dx, dy, symmetry"},
+     "11: [mesh] dz = 1: unknown key; must be one of nx, ny, dx, dy, symmetry, cells_max"},
 
     {"stress sigma: not numbers", "sigma = 7e6\n", "sigma = high\n",
      "14: [stress] sigma = high: not a list of numbers; must be numbers separated by commas, each "

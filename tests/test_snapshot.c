@@ -272,6 +272,53 @@ static void coarsened_states_resume(void **state) {
     }
 }
 
+/* The image of a solver that was coarsened along one direction alone. */
+static void oblong_states_resume(void **state) {
+    (void)state;
+    host_scene scene = host_penny(1, 41, 0.1);
+    ilsa_solver *solver = host_started(&scene, 1.2), *fresh = host_started(&scene, 0.5);
+    assert_int_equal(ilsa_coarsen_along(solver, ILSA_ALONG_Y), ILSA_OK);
+    check_transfer(solver, fresh, 2);
+    ilsa_mesh_def mesh;
+    assert_int_equal(ilsa_get_mesh_def(fresh, &mesh), ILSA_OK);
+    assert_true(mesh.dx == 0.1 && mesh.dy == 0.2);
+    ilsa_solver_destroy(&solver);
+    ilsa_solver_destroy(&fresh);
+}
+
+/* The image of a solver whose mesh has grown, into one whose mesh has not, and back. */
+static void grown_states_resume(void **state) {
+    (void)state;
+    for (int n = 40; n <= 41; n++) {
+        static double cells[41 * 41];
+        for (int k = 0; k < n * n; k++)
+            cells[k] = 0.01 * (k % 5);
+        host_scene scene = host_penny(1, n, 0.1);
+        scene.cells = cells;
+        ilsa_solver *solver = host_started(&scene, 1.2), *fresh = host_started(&scene, 0.5);
+        host_steps(solver, 1);
+        host_image small = host_save(solver);
+        assert_int_equal(ilsa_grow(solver, 3, 6), ILSA_OK);
+        host_image large = host_save(solver);
+        check_transfer(solver, fresh, 2);
+        host_steps(solver, 2);
+        host_restore(solver, &small);
+        assert_true(host_is(solver, &small));
+        check_transfer(solver, fresh, 2);
+        ilsa_mesh_def mesh;
+        assert_int_equal(ilsa_get_mesh_def(fresh, &mesh), ILSA_OK);
+        assert_true(mesh.nx == n && mesh.ny == n);
+        assert_int_equal(ilsa_grow(solver, 3, 6), ILSA_OK);
+        assert_true(host_is(solver, &large));
+        assert_int_equal(ilsa_coarsen(solver), ILSA_OK); /* both at once */
+        check_transfer(solver, fresh, 2);
+        host_free(&small);
+        host_free(&large);
+        ilsa_solver_destroy(&solver);
+        ilsa_solver_destroy(&fresh);
+    }
+}
+
 /* A state that has lost its symmetry has lost it in the image too, though the scene has it again.
  */
 static void lost_symmetry_stays_lost(void **state) {
@@ -615,6 +662,8 @@ int main(void) {
         cmocka_unit_test(restore_clears_what_was_there),
         cmocka_unit_test(rates_and_stress_come_back),
         cmocka_unit_test(coarsened_states_resume),
+        cmocka_unit_test(oblong_states_resume),
+        cmocka_unit_test(grown_states_resume),
         cmocka_unit_test(lost_symmetry_stays_lost),
         cmocka_unit_test(foreign_images_are_refused),
         cmocka_unit_test(every_length_but_one_is_refused),

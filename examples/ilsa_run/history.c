@@ -6,7 +6,7 @@ int history_open(outfile *file, const char *directory) {
     fputs("t,dt,x_min,x_max,y_min,y_max,extent_x_min,extent_x_max,extent_y_min,extent_y_max,"
           "width_source,pressure_source,volume_injected,volume_fracture,volume_leaked,efficiency,"
           "cells,tip_cells,front_iterations,newton_iterations,krylov_iterations,"
-          "elasticity_products,rejected,wall_s\n",
+          "elasticity_products,rejected,coarsened_x,coarsened_y,grown,wall_s\n",
           file->stream);
     return outfile_flush(file);
 }
@@ -30,8 +30,9 @@ int history_row(outfile *file, const ilsa_summary *s, const ilsa_report *step, d
                               s->efficiency};
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
         fprintf(file->stream, "%.15g,", numbers[i]);
-    fprintf(file->stream, "%d,%d,%ld,%ld,%ld,%ld,%ld,%.3f\n", s->cells, s->tip_cells,
+    fprintf(file->stream, "%d,%d,%ld,%ld,%ld,%ld,%ld,%ld,%ld,%ld,%.3f\n", s->cells, s->tip_cells,
             step->front_iterations, step->newton_iterations, step->krylov_iterations,
-            step->elasticity_products, step->rejected, wall_s);
+            step->elasticity_products, step->rejected, step->coarsened_x, step->coarsened_y,
+            step->grown, wall_s);
     return outfile_flush(file);
 }

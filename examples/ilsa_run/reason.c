@@ -64,9 +64,10 @@ static void at_edge(const scene *sc, const ilsa_solver *solver, FILE *out) {
     double in_y = margin(now.extent_y_min, now.extent_y_max, m.dy, m.ny);
     scene_error(sc, out, SECTION_MESH, in_x <= in_y ? MESH_NX : MESH_NY,
                 ": the fracture has come to the edge of the mesh, x %.6g .. %.6g, y %.6g .. %.6g; "
-                "give more cells%s",
+                "give %s",
                 now.extent_x_min, now.extent_x_max, now.extent_y_min, now.extent_y_max,
-                sc->options.coarsen ? "" : ", or [run] coarsen = yes");
+                sc->options.coarsen ? "larger cells, or a larger cells_max for more of them"
+                                    : "more cells, or [run] coarsen = yes");
 }
 
 void reason_write(const scene *sc, const ilsa_solver *solver, ilsa_status status,
@@ -75,11 +76,6 @@ void reason_write(const scene *sc, const ilsa_solver *solver, ilsa_status status
         reason_outside(sc, solver, out);
     else if (status == ILSA_MESH_EDGE)
         at_edge(sc, solver, out);
-    else if (status == ILSA_ERR_VALUE && sc->options.coarsen)
-        scene_error(sc, out, SECTION_RUN, RUN_coarsen,
-                    " = yes: %s; give [mesh] more cells, so that it need not be coarsened, or "
-                    "smaller ones, so that it can be",
-                    ilsa_last_error(solver));
     else if (status == ILSA_STALLED)
         stall_write(sc, solver, last, out);
 }

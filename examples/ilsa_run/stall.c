@@ -52,13 +52,20 @@ static double multiplied(double factor, int n) {
     return factor * n + (n % 2);
 }
 
-/* Of what a scene can change, smaller cells are what has helped. */
+/*
+ * Of what a scene can change, smaller cells are what has helped: as many as the mesh that the
+ * fracture stands on now, of the size that the scene gave, or of half of it where that is what they
+ * are.
+ */
 static void put_advice(const scene *sc, const facts *f, FILE *out) {
     const ilsa_mesh_def *m = &sc->mesh;
-    double factor = f->now.total.coarsened ? ldexp(1, (int)f->now.total.coarsened) : 2;
+    const ilsa_report *done = &f->now.total;
+    double x = done->coarsened ? f->mesh.dx / m->dx : 2;
+    double y = done->coarsened ? f->mesh.dy / m->dy : 2;
     fprintf(out, "try: %s:%d: [mesh] nx = %.0f, ny = %.0f", sc->path,
-            sc->lines[SECTION_MESH][MESH_NX], multiplied(factor, m->nx), multiplied(factor, m->ny));
-    if (f->now.total.coarsened)
+            sc->lines[SECTION_MESH][MESH_NX], x > 1 ? multiplied(x, f->mesh.nx) : f->mesh.nx,
+            y > 1 ? multiplied(y, f->mesh.ny) : f->mesh.ny);
+    if (done->coarsened)
         fprintf(out, ": so many that they need not be coarsened\n");
     else
         fprintf(out, ", dx = %.6g, dy = %.6g: cells half as large\n", 0.5 * m->dx, 0.5 * m->dy);

@@ -39,6 +39,9 @@ static void put_run(FILE *s, const scene *sc, const facts *f, ending ended) {
     if (f->state.total.coarsened)
         fprintf(s, ", coarsened %ld times from %.6g x %.6g", f->state.total.coarsened, sc->mesh.dx,
                 sc->mesh.dy);
+    if (f->state.total.grown)
+        fprintf(s, ", grown %ld times from %d x %d cells", f->state.total.grown, sc->mesh.nx,
+                sc->mesh.ny);
     fputc('\n', s);
     if (sc->log.file)
         put_log(s, &sc->log);

@@ -87,7 +87,10 @@ typedef struct ilsa_solver_def {
     ilsa_front_loop loop;           /* default ILSA_LOOP_COUPLED */
     ilsa_linear_solver linear;      /* default ILSA_LINEAR_AUTO */
     ilsa_product product;           /* default ILSA_PRODUCT_AUTO */
-    int coarsen;                    /* 1: ilsa_advance coarsens the mesh at its edge; default 0 */
+    int coarsen;                    /* 1: ilsa_advance coarsens or grows the mesh at its edge, see
+                                       ilsa_advance_one; default 0 */
+    int cells_max;        /* the most cells nx ny that the mesh may grow to, 1 .. 2^28; default 0:
+                             100000. The mesh of the definition is never too large */
     int threads;          /* 1 .. 64 that a step uses, the caller's included; default 0: as 1 */
     double step_cells;    /* front advance of a suggested step, in cells, 0.01 .. 1; 0: by level */
     double tolerance;     /* of the front, in cells, 1e-12 .. 0.1; 0: by level */
@@ -167,10 +170,12 @@ typedef struct ilsa_report {
     long newton_iterations;   /* linear systems solved */
     long krylov_iterations;   /* GMRES iterations */
     long elasticity_products; /* products with the elasticity matrix */
-    long coarsened;           /* times the mesh was coarsened */
-    double front_change;      /* last change of the front in the last step, in cells */
-    double front_advance;     /* largest advance of the front in the last step, in cells */
-    double seconds;           /* wall time */
+    long coarsened;           /* times the mesh was coarsened at its edge, along x, y or both */
+    long coarsened_x, coarsened_y; /* times along x, times along y */
+    long grown;                    /* times cells were added there */
+    double front_change;           /* last change of the front in the last step, in cells */
+    double front_advance;          /* largest advance of the front in the last step, in cells */
+    double seconds;                /* wall time */
 } ilsa_report;
 
 /*
@@ -201,10 +206,23 @@ ILSA_API ilsa_status ilsa_suggest_dt(const ilsa_solver *solver, double *dt);
 /*
  * Takes one accepted step of the solver's own choice, which does not pass t_limit > time; the last
  * one before t_limit lands exactly on it. A rejected step is tried again with half of its length.
- * The mesh is coarsened at its edge if the definition says so; it stays so if no step is accepted
- * afterwards, and any other failure leaves the solver as it was.
+ *
+ * With coarsen = 1 of the definition it makes room at the edge of the mesh, and the report says
+ * what it did. The first of these that can be done is:
+ * - to coarsen both directions, or the one that is full, where 10 of the new cells stay across half
+ *   of the footprint and, along y, across the layer of stress that a source is in; cells become at
+ *   most 4 to 1 oblong so, and 5 of the longer ones stay across the footprint;
+ * - to add cells in the full directions, as many as there are, or as cells_max allows;
+ * - to coarsen both directions where 10 cells stay across half of the footprint, though not across
+ *   the layer;
+ * - to add cells in the full direction and take as many away in the other, far from the footprint,
+ *   if the stress is not per cell;
+ * - to coarsen the full direction, as ilsa_coarsen_along can.
+ * Where nothing is left the status is ILSA_MESH_EDGE. The mesh stays what it became if no step is
+ * accepted afterwards, and any other failure leaves the solver as it was.
+ *
  * ILSA_STALLED when steps are refused down to 1e-12 of the time, or 400 of them while the time
- * grows by a tenth; and the statuses of ilsa_step and ilsa_coarsen.
+ * grows by a tenth; and the statuses of ilsa_step.
  */
 ILSA_API ilsa_status ilsa_advance_one(ilsa_solver *solver, double t_limit, ilsa_report *report);
 
@@ -232,9 +250,31 @@ ILSA_API ilsa_status ilsa_wait(ilsa_solver *solver, double t);
  */
 ILSA_API ilsa_status ilsa_coarsen(ilsa_solver *solver);
 
+/* Directions of the mesh, which may be added up. */
+enum { ILSA_ALONG_X = 1, ILSA_ALONG_Y = 2 };
+
 /*
- * Writes the mesh that the solver stands on now. Coarsening changes it, and so does a snapshot that
- * was taken on other cells. ILSA_ERR_NULL.
+ * Coarsens along x, y or both: cells become twice as long in the directions given, and stay as they
+ * are in the others. The footprint must be 4 of the new cells across in the directions given, and
+ * dx / dy must stay within 1e-3 .. 1e3. With both directions it is ilsa_coarsen, with its statuses.
+ */
+ILSA_API ilsa_status ilsa_coarsen_along(ilsa_solver *solver, int directions);
+
+/*
+ * Adds cells of the same size: `columns` on the left and as many on the right, `rows` below and as
+ * many above, so that the mesh stays around the origin, sources where they are, and symmetry what
+ * it is. The fracture stays as it is, bit for bit, and goes on as it would have on the larger mesh
+ * from the start. Layers of stress go on into the new cells; with a stress per cell each takes the
+ * value of the nearest cell that there was. Cells outside the fracture cost memory
+ * (docs/embedding.md) and no time. All pointers handed out before are invalid afterwards, and cells
+ * have other indices. ILSA_ERR_NULL, ILSA_ERR_STATE, ILSA_ERR_VALUE for a negative count or a mesh
+ * of more cells than cells_max or ilsa_mesh_create allows, ILSA_ERR_MEMORY.
+ */
+ILSA_API ilsa_status ilsa_grow(ilsa_solver *solver, int columns, int rows);
+
+/*
+ * Writes the mesh that the solver stands on now. Coarsening and growth change it, and so does a
+ * snapshot that was taken on other cells. ILSA_ERR_NULL.
  */
 ILSA_API ilsa_status ilsa_get_mesh_def(const ilsa_solver *solver, ilsa_mesh_def *def);
 

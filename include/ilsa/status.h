@@ -15,13 +15,13 @@ extern "C" {
  *
  * A call that fails leaves every solver, mesh, material and stress as it was, bit for bit. The
  * exceptions are ilsa_advance, which keeps the steps that it has taken, and ilsa_advance_one, which
- * keeps a coarsened mesh. The counters of work, ilsa_summary.total and ilsa_profile, count
- * refused steps too.
+ * keeps a mesh that it has coarsened or grown. The counters of work, ilsa_summary.total and
+ * ilsa_profile, count refused steps too.
  */
 typedef enum ilsa_status {
     ILSA_OK = 0,
-    ILSA_STEP_REJECTED = 1, /* no solution was found for this dt: try a smaller one */
-    ILSA_MESH_EDGE = 2,     /* the footprint would leave the mesh: coarsen, or take a larger mesh */
+    ILSA_STEP_REJECTED = 1,  /* no solution was found for this dt: try a smaller one */
+    ILSA_MESH_EDGE = 2,      /* the footprint would leave the mesh: coarsen or grow it */
     ILSA_STEP_TOO_LARGE = 3, /* the front would pass more cells than one step may: a smaller dt */
     ILSA_STALLED = 4,        /* an advance was refused too often, or down to the smallest step */
     ILSA_CLOSED = 5,         /* every cell is closed and nothing is injected: see ilsa_wait */

@@ -9,13 +9,13 @@
 #include "base/tuning.h"
 #include "model/mesh.h"
 #include "model/options.h"
-#include "step/solver.h"
+#include "step/mesh_arrays.h"
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
 
 #define SNAPSHOT_MAGIC "ilsasnap"
-enum { SNAPSHOT_LAYOUT = 4 };
+enum { SNAPSHOT_LAYOUT = 5 };
 
 typedef struct header {
     char magic[8];
@@ -26,8 +26,8 @@ typedef struct header {
 
 /* What a solver must share with the one that the snapshot was taken of. */
 typedef struct identity {
-    int nx, ny, source_count, none;
-    double dx, dy; /* as they were; coarsening doubles them */
+    ilsa_mesh_def mesh; /* of the definition */
+    int source_count, none;
     ilsa_material_def material;
     double option[OPTION_COUNT]; /* in force; 0 where it need not be shared */
 } identity;
@@ -73,11 +73,8 @@ static identity identify(const ilsa_solver *s) {
     const model *m = &s->model;
     identity id;
     memset(&id, 0, sizeof id);
-    id.nx = m->mesh.nx;
-    id.ny = m->mesh.ny;
+    id.mesh = m->defined;
     id.source_count = m->sources.count;
-    id.dx = m->mesh.dx;
-    id.dy = m->mesh.dy;
     id.material = m->material;
     id.material.mu_prime = m->inviscid ? 0 : m->material.mu_prime;
     for (int k = 0; k < OPTION_COUNT; k++) {
@@ -88,16 +85,33 @@ static identity identify(const ilsa_solver *s) {
     return id;
 }
 
-/* The same definition, however often either has been coarsened, which doubles dx and dy. */
 static bool same_definition(const identity *a, const identity *b) {
-    identity like = *a;
-    int times;
-    like.dx = b->dx;
-    like.dy = b->dy;
     /* Copies of the same bits are meant, and every byte is defined. */
     /* NOLINTNEXTLINE(bugprone-suspicious-memory-comparison,cert-exp42-c,cert-flp37-c) */
-    return memcmp(&like, b, sizeof like) == 0 && frexp(a->dx / b->dx, &times) == 0.5 &&
-           a->dx / b->dx == a->dy / b->dy;
+    return memcmp(a, b, sizeof *a) == 0;
+}
+
+/* Whether coarsening makes a size of cells from that of the definition: it doubles it. */
+static bool is_coarsened(double now, double defined) {
+    int times;
+    return frexp(now / defined, &times) == 0.5 && times > 0;
+}
+
+/* Whether every source is on a mesh, which may have lost cells. */
+static bool has_sources(const ilsa_mesh_def *mesh, const sources *s) {
+    bool all = true;
+    for (int k = 0; k < s->count; k++) {
+        all = all && ilsai_source_check(mesh, &s->at[k].def, NULL) == ILSA_OK;
+    }
+    return all;
+}
+
+/* Whether coarsening and growth can have made a mesh from that of a model's definition. */
+static bool is_mesh_of(const ilsa_mesh_def *now, const model *m) {
+    return ilsai_mesh_check(now, NULL) == ILSA_OK && (now->nx - m->defined.nx) % 2 == 0 &&
+           (now->ny - m->defined.ny) % 2 == 0 && has_sources(now, &m->sources) &&
+           is_coarsened(now->dx, m->defined.dx) && is_coarsened(now->dy, m->defined.dy) &&
+           (double)ilsai_mesh_cells(now) <= ilsai_model_cells_max(m);
 }
 
 /* Flags that are none, as a bool must not be read from any byte, fail. */
@@ -173,7 +187,9 @@ static void write_body(stream *io, const ilsa_solver *s) {
     pace p = s->pace;
     box region = ilsai_fracture_region(&s->model.mesh, &f.footprint);
     int32_t paths = f.paths.count;
+    ilsa_mesh_def mesh = s->model.mesh;
     pass(io, &id, sizeof id);
+    pass(io, &mesh, sizeof mesh);
     pass_fracture(io, &f, &p);
     for (int k = 0; k < s->model.sources.count; k++) {
         ilsa_source_def def = s->model.sources.at[k].def;
@@ -247,6 +263,7 @@ typedef struct incoming {
     ilsa_source_def *sources;
     model model;         /* the solver's, with mesh, stress and sigma of the snapshot */
     elasticity *elastic; /* for another cell size, NULL where it is the solver's */
+    mesh_arrays arrays;  /* for other counts of cells, nothing where they are the solver's */
 } incoming;
 
 static void release(incoming *from) {
@@ -255,6 +272,7 @@ static void release(incoming *from) {
     ilsai_cell_field_clear(&from->model.stress);
     ilsai_release(from->model.sigma);
     ilsai_elasticity_destroy(&from->elastic);
+    ilsai_mesh_arrays_destroy(&from->arrays);
 }
 
 /* Rates change, places do not. */
@@ -329,7 +347,10 @@ static ilsa_status read_head(stream *io, const ilsa_solver *s, incoming *from) {
     from->model = s->model;
     from->model.stress = (cell_field){0};
     from->model.sigma = NULL;
-    from->model.mesh = (ilsa_mesh_def){id.nx, id.ny, id.dx, id.dy};
+    pass(io, &from->model.mesh, sizeof from->model.mesh);
+    if (io->failed || !is_mesh_of(&from->model.mesh, &s->model)) {
+        return ILSA_ERR_SNAPSHOT;
+    }
     pass_fracture(io, &from->fracture, &from->pace);
     if (io->failed || !(from->pace.dt_limit > 0) ||
         !ilsai_snapshot_fracture_is_sound(&from->fracture, &from->model.mesh) ||
@@ -342,13 +363,15 @@ static ilsa_status read_head(stream *io, const ilsa_solver *s, incoming *from) {
 }
 
 /* The fields of the snapshot must fill what is left of it exactly, and be those of a fracture. */
-static bool fields_fit(const stream *io, const incoming *from, const box *region,
-                       const fields *own) {
-    stream count = {.at = io->at, .size = SIZE_MAX};
-    snapshot_fields seen = {io->in + io->at, *region, from->fracture.footprint,
-                            ilsai_model_leaks(&from->model)};
-    pass_fields(&count, &from->model, region, own);
-    return count.at == io->size && ilsai_snapshot_fields_are_sound(&seen);
+static bool fields_fit(const stream *io, const incoming *from, const box *region) {
+    bool leaks = ilsai_model_leaks(&from->model);
+    snapshot_fields seen = {io->in + io->at, *region, from->fracture.footprint, leaks};
+    size_t bytes = 0;
+    for (int row = 0; row < FIELD_COUNT; row++) {
+        bytes += ilsai_snapshot_has(row, leaks) ? ilsai_field_rows[row].size : 0;
+    }
+    return io->size - io->at == ilsai_box_columns(region) * ilsai_box_rows(region) * bytes &&
+           ilsai_snapshot_fields_are_sound(&seen);
 }
 
 /* Makes what the solver needs for the mesh and the stress of the snapshot. */
@@ -361,7 +384,10 @@ static ilsa_status prepare(const ilsa_solver *s, incoming *from) {
     if (ilsai_model_fill_stress(&from->model) != ILSA_OK) {
         return ILSA_ERR_SNAPSHOT; /* a stress per cell of another mesh, or beyond any */
     }
-    if (ilsai_mesh_same(mesh, &s->model.mesh)) {
+    if (mesh->nx != s->model.mesh.nx || mesh->ny != s->model.mesh.ny) {
+        ILSAI_TRY(ilsai_mesh_arrays_create(&from->arrays, mesh, ilsai_model_leaks(&s->model)));
+    }
+    if (mesh->dx == s->model.mesh.dx && mesh->dy == s->model.mesh.dy) {
         return ILSA_OK;
     }
     return ilsai_elasticity_create(s->model.material.E_prime, mesh->dx, mesh->dy,
@@ -377,6 +403,9 @@ static void adopt(ilsa_solver *s, incoming *from, const box *region, stream *io)
         elasticity *old_elastic = s->numerics.elastic;
         s->numerics.elastic = from->elastic;
         from->elastic = old_elastic;
+    }
+    if (from->arrays.coupled) {
+        ilsai_mesh_arrays_exchange(&from->arrays, s);
     }
     from->fracture.cells = s->fracture.cells;
     s->fracture = from->fracture;
@@ -395,7 +424,7 @@ static void adopt(ilsa_solver *s, incoming *from, const box *region, stream *io)
 static ilsa_status restore(ilsa_solver *s, stream *io, incoming *from) {
     ILSAI_TRY(read_head(io, s, from));
     box region = ilsai_fracture_region(&from->model.mesh, &from->fracture.footprint);
-    if (!fields_fit(io, from, &region, &s->fracture.cells)) {
+    if (!fields_fit(io, from, &region)) {
         return ILSA_ERR_SNAPSHOT;
     }
     ILSAI_TRY(prepare(s, from));

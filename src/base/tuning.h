@@ -196,6 +196,21 @@
 #define ILSAI_START_CELLS 2.0
 /* A footprint must have this many new cells across to be coarsened. */
 #define ILSAI_COARSEN_LEAST 4
+/* The cells that a mesh may grow to where the definition does not say. */
+#define ILSAI_GROW_CELLS 100000.0
+/* At the edge of the mesh: the cells that coarsening must leave across half of the footprint, and
+ * across the layer of a source. */
+#define ILSAI_EDGE_CELLS_ACROSS 10.0
+/* The ratio of sides up to which cells are coarsened along one direction alone, and the cells of
+ * that length which must stay across the footprint the other way. Sides of 8 to 1 put a half-length
+ * off by 0.8 %, and with four and a half cells across a footprint no step was accepted. */
+#define ILSAI_EDGE_OBLONG     4.0
+#define ILSAI_EDGE_LENGTHWISE 5.0
+/* The free cells of a direction that counts as full; the fewest cells worth being added on a side;
+ * the fewest that stay beside the footprint where others are taken away. */
+#define ILSAI_EDGE_FREE  3
+#define ILSAI_EDGE_ADDED 4
+#define ILSAI_EDGE_KEPT  8.0
 /* Distances are measured anew this far behind the survey cells, in diagonals of the new cells. */
 #define ILSAI_COARSEN_REACH 3.0
 

@@ -135,6 +135,22 @@ static int first_layer(const cell_field *f, double y0) {
     return low;
 }
 
+double ilsai_cell_field_layer(const cell_field *f, double y) {
+    if (f->kind != FIELD_LAYERS) {
+        return INFINITY;
+    }
+    const double *interface_y = f->values, *value = interface_y + f->interfaces;
+    int first = first_layer(f, y), last = first;
+    while (first > 0 && value[first - 1] == value[first]) {
+        first--;
+    }
+    while (last < f->interfaces && value[last + 1] == value[last]) {
+        last++;
+    }
+    return first > 0 && last < f->interfaces ? interface_y[last] - interface_y[first - 1]
+                                             : INFINITY;
+}
+
 /*
  * Mean of the layers over y0 .. y1. Summed outwards from the origin, so that mirrored layers give
  * the same bits in mirrored cells; a cell in one layer takes its value as it stands.
@@ -202,7 +218,8 @@ ilsa_status ilsai_cell_field_fill(const cell_field *f, const char *name, const i
     return ILSA_OK;
 }
 
-/* ---- Coarsening --------------------------------------------------------------------------- */
+/* ---- Coarsening and growth
+ * --------------------------------------------------------------------------- */
 
 /* One line of equally spaced values in memory. */
 typedef struct line {
@@ -238,13 +255,13 @@ static double coarse_mean(line old, int i) {
     return centre;
 }
 
-static void coarsen_line(line old, double *new_value) {
+static void coarsen_line(line old, int factor, double *new_value) {
     for (int i = 0; i < old.count; i++) {
-        new_value[(size_t)i * old.step] = coarse_mean(old, i);
+        new_value[(size_t)i * old.step] = factor == 2 ? coarse_mean(old, i) : at(old, i);
     }
 }
 
-ilsa_status ilsai_cell_field_coarsen(cell_field *f) {
+ilsa_status ilsai_cell_field_coarsen(cell_field *f, int factor_x, int factor_y) {
     if (f->kind != FIELD_CELLS) {
         return ILSA_OK;
     }
@@ -255,14 +272,36 @@ ilsa_status ilsai_cell_field_coarsen(cell_field *f) {
         return ILSA_ERR_MEMORY;
     }
     for (size_t j = 0; j < (size_t)ny; j++) {
-        coarsen_line((line){f->values + j * width, 1, nx}, along_x + j * width);
+        coarsen_line((line){f->values + j * width, 1, nx}, factor_x, along_x + j * width);
     }
     for (size_t i = 0; i < width; i++) {
-        coarsen_line((line){along_x + i, width, ny}, f->values + i);
+        coarsen_line((line){along_x + i, width, ny}, factor_y, f->values + i);
     }
     ilsai_release(along_x);
-    f->mesh.dx *= 2;
-    f->mesh.dy *= 2;
+    f->mesh.dx *= factor_x;
+    f->mesh.dy *= factor_y;
+    return ILSA_OK;
+}
+
+ilsa_status ilsai_cell_field_grow(cell_field *f, int columns, int rows) {
+    if (f->kind != FIELD_CELLS) {
+        return ILSA_OK;
+    }
+    const ilsa_mesh_def old = f->mesh, mesh = ilsai_mesh_grown(&old, columns, rows);
+    double *values = ilsai_allocate(ilsai_mesh_cells(&mesh), sizeof *values);
+    if (!values) {
+        return ILSA_ERR_MEMORY;
+    }
+    for (int j = 0; j < mesh.ny; j++) {
+        size_t from = (size_t)(j < rows ? 0 : j - rows < old.ny ? j - rows : old.ny - 1);
+        line row = {f->values + from * (size_t)old.nx, 1, old.nx};
+        for (int i = 0; i < mesh.nx; i++) {
+            values[(size_t)j * (size_t)mesh.nx + (size_t)i] = at(row, i - columns);
+        }
+    }
+    ilsai_release(f->values);
+    f->values = values;
+    f->mesh = mesh;
     return ILSA_OK;
 }
 

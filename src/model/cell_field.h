@@ -49,12 +49,23 @@ bool ilsai_cell_field_varies(const cell_field *f);
 ilsa_status ilsai_cell_field_fill(const cell_field *f, const char *name, const ilsa_mesh_def *mesh,
                                   double *out);
 
+/* The height of the layer that holds y, with neighbours of its value; infinite where it has no end,
+ * and where there are no layers. */
+double ilsai_cell_field_layer(const cell_field *f, double y);
+
 /*
- * Takes a field per cell to cells twice as large, the same counts, around the origin: each takes
- * the area-weighted mean of the old cells it covers, or the nearest one's value beyond the old
- * mesh. Other fields need no change. ILSA_ERR_MEMORY, the field is then as it was.
+ * Takes a field per cell to cells that are larger by factors of 1 or 2, the same counts, around the
+ * origin: each takes the area-weighted mean of the old cells it covers, or the nearest one's value
+ * beyond the old mesh. Other fields need no change. ILSA_ERR_MEMORY, the field is then as it was.
  */
-ilsa_status ilsai_cell_field_coarsen(cell_field *f);
+ilsa_status ilsai_cell_field_coarsen(cell_field *f, int factor_x, int factor_y);
+
+/*
+ * Takes a field per cell to a mesh with columns more on either side and rows more below and above,
+ * each of which takes the value of the nearest cell. Other fields need no change. ILSA_ERR_MEMORY,
+ * the field is then as it was.
+ */
+ilsa_status ilsai_cell_field_grow(cell_field *f, int columns, int rows);
 
 /* Flat form for a snapshot, every byte of which is defined: its size, and writing it. */
 size_t ilsai_cell_field_flat_size(const cell_field *f);

@@ -3,7 +3,7 @@
 #include "base/memory.h"
 #include "base/tuning.h"
 
-enum { CELLS_MIN = 3, CELLS_MAX = 1000000, CELLS_TOTAL_MAX = 1 << 28 };
+enum { CELLS_MIN = 3, CELLS_MAX = ILSAI_MESH_COUNT_MOST, CELLS_TOTAL_MAX = 1 << 28 };
 
 ilsa_mesh_def ilsa_mesh_def_default(void) {
     return (ilsa_mesh_def){0};

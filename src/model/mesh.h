@@ -13,6 +13,14 @@ struct ilsa_mesh {
 /* ILSA_OK, or ILSA_ERR_VALUE and a message. */
 ilsa_status ilsai_mesh_check(const ilsa_mesh_def *def, error_text *error);
 
+/* The most columns, or rows, that a mesh may have. */
+#define ILSAI_MESH_COUNT_MOST 1000000
+
+/* The mesh with columns more on either side and rows more below and above. */
+static inline ilsa_mesh_def ilsai_mesh_grown(const ilsa_mesh_def *def, int columns, int rows) {
+    return (ilsa_mesh_def){def->nx + 2 * columns, def->ny + 2 * rows, def->dx, def->dy};
+}
+
 /* Whether two definitions mean the same cells. */
 static inline int ilsai_mesh_same(const ilsa_mesh_def *a, const ilsa_mesh_def *b) {
     return a->nx == b->nx && a->ny == b->ny && a->dx == b->dx && a->dy == b->dy;

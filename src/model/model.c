@@ -4,6 +4,7 @@
 #include "base/tuning.h"
 #include "model/material.h"
 #include "model/mesh.h"
+#include <math.h>
 
 static ilsa_material_def tip_material(const ilsa_material_def *material, ilsa_tip_model tip) {
     ilsa_material_def ruling = *material;
@@ -18,7 +19,10 @@ void ilsai_model_set_viscosity(model *m, double mu_prime) {
 }
 
 ilsa_status ilsai_model_create(model *m, const ilsa_solver_def *def) {
-    *m = (model){.options = *def, .mesh = def->mesh->def, .material = def->material->def};
+    *m = (model){.options = *def,
+                 .defined = def->mesh->def,
+                 .mesh = def->mesh->def,
+                 .material = def->material->def};
     m->options.mesh = NULL;
     m->options.material = NULL;
     m->options.stress = NULL;
@@ -40,6 +44,11 @@ void ilsai_model_destroy(model *m) {
     ilsai_cell_field_clear(&m->stress);
     ilsai_release(m->sigma);
     *m = (model){0};
+}
+
+double ilsai_model_cells_max(const model *m) {
+    double most = m->options.cells_max > 0 ? m->options.cells_max : ILSAI_GROW_CELLS;
+    return fmax(most, (double)ilsai_mesh_cells(&m->defined));
 }
 
 /* Whether the stress of every cell is that of its mirror image. */

@@ -2,7 +2,8 @@
  * What the host says: mesh, material, options, sources and far-field stress.
  *
  * Written by api/ alone, from the definition and by the host's calls between steps; but coarsening
- * doubles the cells, and restoring a snapshot takes rates, stress and cells from it. A step reads.
+ * doubles the cells, growth adds some, and restoring a snapshot takes rates, stress and cells from
+ * it. A step reads.
  */
 #ifndef ILSAI_MODEL_H
 #define ILSAI_MODEL_H
@@ -16,8 +17,9 @@
 
 typedef struct model {
     ilsa_solver_def
-        options;        /* as given, level = 0 replaced by its default; its pointers are NULL */
-    ilsa_mesh_def mesh; /* as it is now */
+        options;           /* as given, level = 0 replaced by its default; its pointers are NULL */
+    ilsa_mesh_def defined; /* the mesh as given */
+    ilsa_mesh_def mesh;    /* as it is now */
     ilsa_material_def material;     /* its viscosity is the fracture's once there is one */
     ilsa_material_def tip_material; /* without the processes that the tip model leaves out */
     bool inviscid;                  /* the material was given without viscosity */
@@ -40,6 +42,9 @@ void ilsai_model_set_viscosity(model *m, double mu_prime);
  * ILSA_ERR_VALUE, the message is the calling thread's; the model is then as it was.
  */
 ilsa_status ilsai_model_fill_stress(model *m);
+
+/* The most cells that the mesh may grow to. */
+double ilsai_model_cells_max(const model *m);
 
 /* Whether fluid leaks off at all. */
 static inline bool ilsai_model_leaks(const model *m) {

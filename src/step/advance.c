@@ -2,6 +2,7 @@
 #include "base/tuning.h"
 #include "front/geometry.h"
 #include "step/accept.h"
+#include "step/edge.h"
 #include "step/step.h"
 #include <math.h>
 
@@ -63,6 +64,9 @@ static void add_report(ilsa_report *sum, const ilsa_report *r) {
     total.krylov_iterations += sum->krylov_iterations;
     total.elasticity_products += sum->elasticity_products;
     total.coarsened += sum->coarsened;
+    total.coarsened_x += sum->coarsened_x;
+    total.coarsened_y += sum->coarsened_y;
+    total.grown += sum->grown;
     total.seconds += sum->seconds;
     *sum = total;
 }
@@ -177,11 +181,9 @@ static ilsa_status step_until_accepted(ilsa_solver *s, double t_limit, ilsa_repo
 
 static ilsa_status advance_one(ilsa_solver *s, double t_limit, ilsa_report *report) {
     ilsa_status status = step_until_accepted(s, t_limit, report);
-    if (status == ILSA_MESH_EDGE && s->model.options.coarsen) {
-        status = ilsa_coarsen(s);
-        report->coarsened += status == ILSA_OK;
-        s->total.coarsened += status == ILSA_OK;
-        status = status ? status : step_until_accepted(s, t_limit, report);
+    while (status == ILSA_MESH_EDGE) {
+        ILSAI_TRY(ilsai_edge_pass(s, report));
+        status = step_until_accepted(s, t_limit, report);
     }
     return status;
 }

@@ -1,8 +1,9 @@
 /*
- * The fracture moved to cells twice as large, the same number of them (end of section 5.1).
+ * The fracture moved to cells twice as large along x, y or both, the same number of them (end of
+ * section 5.1).
  *
  * With an odd count a new cell covers one old cell and the halves of its two neighbours, with an
- * even count two old cells, along each axis.
+ * even count two old cells, along each axis that is coarsened. Along the other it covers one.
  */
 #include "base/memory.h"
 #include "base/tuning.h"
@@ -12,24 +13,31 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* The old cells along one axis that a new one covers, and the part of each. */
+/* The old cells along one axis that a new one covers, and the part of each; the one or two of them
+ * that its centre lies in or between. */
 typedef struct cover {
     int first, count;
     double part[3];
+    int centre, centres;
 } cover;
 
-static cover covered(int n, int i) {
-    cover c = {.first = 2 * i - (n - 1) / 2 - 1, .count = 3, .part = {0.5, 1, 0.5}};
-    if (n % 2 == 0) {
-        c = (cover){.first = 2 * i - n / 2, .count = 2, .part = {1, 1}};
+static cover covered(int n, int factor, int i) {
+    if (factor == 1) {
+        return (cover){i, 1, {1}, i, 1};
     }
-    return c;
+    if (n % 2 == 0) {
+        int first = 2 * i - n / 2;
+        return (cover){first, 2, {1, 1}, first, 2};
+    }
+    int middle = 2 * i - (n - 1) / 2;
+    return (cover){middle - 1, 3, {0.5, 1, 0.5}, middle, 1};
 }
 
 /* The new fracture while it is being made. */
 typedef struct coarse {
-    const model *m;    /* the old model */
-    const fracture *f; /* the old fracture */
+    const model *m;         /* the old model */
+    const fracture *f;      /* the old fracture */
+    int factor_x, factor_y; /* 1 or 2: how much larger the new cells are */
     /* The old level and velocity as the whole channel has them, and trigger times and their spread
      * as they are or will be; of its kinds those that the inward march reaches are empty. */
     fields known;
@@ -40,6 +48,14 @@ typedef struct coarse {
     cell_field stress;
     elasticity *elastic;
 } coarse;
+
+static cover columns_under(const coarse *c, int i) {
+    return covered(c->mesh.nx, c->factor_x, i);
+}
+
+static cover rows_under(const coarse *c, int j) {
+    return covered(c->mesh.ny, c->factor_y, j);
+}
 
 static bool on_mesh(const ilsa_mesh_def *m, int i, int j) {
     return i >= 0 && i < m->nx && j >= 0 && j < m->ny;
@@ -55,7 +71,7 @@ static int outside_in(const cover *c, int k) {
  * (i, j), in old cells. */
 static double sum_wet(const coarse *c, const double *field, int i, int j) {
     const ilsa_mesh_def *old = &c->m->mesh;
-    cover across = covered(old->nx, i), up = covered(old->ny, j);
+    cover across = columns_under(c, i), up = rows_under(c, j);
     double sum = 0;
     for (int k = 0; k < up.count; k++) {
         double row = 0;
@@ -92,13 +108,12 @@ static double old_value(const coarse *c, int row, int i, int j) {
 
 /* Mean of the finite values in the old cells around the new centre. */
 static double at_centre(const coarse *c, int row, int i, int j) {
-    const ilsa_mesh_def *old = &c->m->mesh;
-    int odd_x = old->nx % 2, odd_y = old->ny % 2, found = 0;
-    int first_x = covered(old->nx, i).first + odd_x, first_y = covered(old->ny, j).first + odd_y;
+    cover across = columns_under(c, i), up = rows_under(c, j);
+    int found = 0;
     double sum = 0;
-    for (int b = first_y; b < first_y + 2 - odd_y; b++) {
+    for (int b = up.centre; b < up.centre + up.centres; b++) {
         double line = 0;
-        for (int a = first_x; a < first_x + 2 - odd_x; a++) {
+        for (int a = across.centre; a < across.centre + across.centres; a++) {
             double here = old_value(c, row, a, b);
             line += isfinite(here) ? here : 0;
             found += isfinite(here);
@@ -109,8 +124,8 @@ static double at_centre(const coarse *c, int row, int i, int j) {
 }
 
 /* How far into the channel distances are measured anew. */
-static double depth(const ilsa_mesh_def *mesh) {
-    return 2 * ILSAI_COARSEN_REACH * hypot(mesh->dx, mesh->dy);
+static double depth(const coarse *c) {
+    return ILSAI_COARSEN_REACH * hypot(c->mesh.dx, c->mesh.dy);
 }
 
 /*
@@ -139,7 +154,7 @@ static ilsa_status measure_inwards(coarse *c, march *inwards) {
         }
     }
     ilsa_status status = ilsai_march_run(inwards, &g, &region, c->known.kind, survey_cells, count,
-                                         depth(mesh), c->known.level);
+                                         depth(c), c->known.level);
     ilsai_release(survey_cells);
     return status;
 }
@@ -173,7 +188,7 @@ static void level_all(coarse *c, const march *inwards) {
     size_t all = ilsai_mesh_cells(&c->m->mesh);
     for (size_t k = 0; k < all; k++) {
         bool channel = old->kind[k] == ILSA_CELL_CHANNEL;
-        c->known.level[k] = channel ? -depth(&c->m->mesh) : old->level[k];
+        c->known.level[k] = channel ? -depth(c) : old->level[k];
         c->known.speed[k] = old->speed[k];
         if (old->trigger) {
             c->known.trigger[k] = passing(c, k);
@@ -186,14 +201,14 @@ static void level_all(coarse *c, const march *inwards) {
     }
 }
 
-static double level_at(const coarse *c, int i, int j) {
-    return on_mesh(&c->mesh, i, j) ? c->field.level[j * c->mesh.nx + i] : INFINITY;
+static double on_new(const coarse *c, const double *field, int i, int j) {
+    return on_mesh(&c->mesh, i, j) ? field[j * c->mesh.nx + i] : INFINITY;
 }
 
-/* Difference of the new level along one axis, central where both sides are known. */
-static double slope(const coarse *c, int i, int j, int di, int dj) {
-    double here = level_at(c, i, j), ahead = level_at(c, i + di, j + dj);
-    double behind = level_at(c, i - di, j - dj), d = di ? c->mesh.dx : c->mesh.dy;
+/* Slope of a field of the new cells along one axis, central where both sides are known. */
+static double slope(const coarse *c, const double *field, int i, int j, int di, int dj) {
+    double here = on_new(c, field, i, j), ahead = on_new(c, field, i + di, j + dj);
+    double behind = on_new(c, field, i - di, j - dj), d = di ? c->mesh.dx : c->mesh.dy;
     if (isfinite(ahead) && isfinite(behind)) {
         return fabs(ahead - behind) / (2 * d);
     }
@@ -204,8 +219,9 @@ static double slope(const coarse *c, int i, int j, int di, int dj) {
 
 /* The front in the new cell (i, j). */
 static front_cell front_in(const coarse *c, int i, int j) {
-    front_cell f = {.cell = j * c->mesh.nx + i, .T = level_at(c, i, j)};
-    double x = slope(c, i, j, 1, 0), y = slope(c, i, j, 0, 1), norm = hypot(x, y);
+    const double *level = c->field.level;
+    front_cell f = {.cell = j * c->mesh.nx + i, .T = on_new(c, level, i, j)};
+    double x = slope(c, level, i, j, 1, 0), y = slope(c, level, i, j, 0, 1), norm = hypot(x, y);
     f.cos_a = norm > 0 ? x / norm : 1;
     f.sin_a = norm > 0 ? y / norm : 0;
     f.ell = 0.5 * (c->mesh.dx * f.cos_a + c->mesh.dy * f.sin_a) - f.T;
@@ -229,7 +245,7 @@ static int by_time(const void *a, const void *b) {
  */
 static int passed_centres(const coarse *c, const front_cell *f, int i, int j, knot knots[9]) {
     const ilsa_mesh_def *old = &c->m->mesh;
-    cover across = covered(old->nx, i), up = covered(old->ny, j);
+    cover across = columns_under(c, i), up = rows_under(c, j);
     int count = 0;
     for (int b = up.first; b < up.first + up.count; b++) {
         for (int a = across.first; a < across.first + across.count; a++) {
@@ -278,10 +294,23 @@ static void sample(coarse *c, int i, int j) {
     }
     f->speed[cell] = isfinite(f->speed[cell]) ? f->speed[cell] : 0; /* beyond the old mesh */
     if (f->trigger) {
-        double now = c->f->time, t = fmin(f->trigger[cell], now), spread = 2 * f->spread[cell];
+        double t = fmin(f->trigger[cell], c->f->time);
         f->trigger[cell] = f->level[cell] <= 0 ? t : INFINITY;
-        f->spread[cell] = isfinite(spread) ? fmax(fmin(spread, now - t), 0) : 0;
     }
+}
+
+/* The trigger time is spread over a larger cell: along the axes on which it is, as far as the front
+ * went along them. */
+static void widen_spread(coarse *c, int i, int j) {
+    const fields *f = &c->field;
+    size_t cell = (size_t)j * (size_t)c->mesh.nx + (size_t)i;
+    double x = c->mesh.dx * slope(c, f->trigger, i, j, 1, 0);
+    double y = c->mesh.dy * slope(c, f->trigger, i, j, 0, 1);
+    double before = hypot(x / c->factor_x, y / c->factor_y);
+    double factor = before > 0 ? hypot(x, y) / before : 2;
+    double spread = factor * f->spread[cell];
+    double age = c->f->time - fmin(f->trigger[cell], c->f->time);
+    f->spread[cell] = isfinite(spread) ? fmax(fmin(spread, age), 0) : 0;
 }
 
 /* Gives a new cell what the old cells under it hold: volumes are sums, so nothing is lost. */
@@ -297,7 +326,7 @@ static ilsa_status lay_cell(coarse *c, int i, int j) {
         double *values = ilsai_field(&c->field, row);
         const double *old = ilsai_field(&c->f->cells, row);
         if (values && ilsai_field_rows[row].coarsened == COARSEN_SUM) {
-            values[cell] = 0.25 * sum_wet(c, old, i, j);
+            values[cell] = sum_wet(c, old, i, j) / (c->factor_x * c->factor_y);
         } else if (values && ilsai_field_rows[row].coarsened == COARSEN_WET_MEAN) {
             values[cell] = sum_wet(c, old, i, j) / wet;
         }
@@ -318,9 +347,16 @@ static ilsa_status lay_cell(coarse *c, int i, int j) {
 static box covering(const coarse *c) {
     box old = ilsai_fracture_region(&c->m->mesh, &c->f->footprint);
     int nx = c->mesh.nx, ny = c->mesh.ny;
-    box b = {(old.x0 + (nx - 1) / 2) / 2 - 1, (old.x1 + nx / 2) / 2 + 1,
-             (old.y0 + (ny - 1) / 2) / 2 - 1, (old.y1 + ny / 2) / 2 + 1};
     grid flat = ilsai_grid(&c->mesh, 0, 0);
+    box b = old;
+    if (c->factor_x == 2) {
+        b.x0 = (old.x0 + (nx - 1) / 2) / 2 - 1;
+        b.x1 = (old.x1 + nx / 2) / 2 + 1;
+    }
+    if (c->factor_y == 2) {
+        b.y0 = (old.y0 + (ny - 1) / 2) / 2 - 1;
+        b.y1 = (old.y1 + ny / 2) / 2 + 1;
+    }
     return ilsai_box_widen(&flat, &b, 0, 0);
 }
 
@@ -330,6 +366,11 @@ static ilsa_status lay(coarse *c) {
     for (int j = b.y0; j <= b.y1; j++) {
         for (int i = b.x0; i <= b.x1; i++) {
             sample(c, i, j);
+        }
+    }
+    for (int j = b.y0; c->field.trigger && j <= b.y1; j++) {
+        for (int i = b.x0; i <= b.x1; i++) {
+            widen_spread(c, i, j);
         }
     }
     for (int j = b.y0; j <= b.y1; j++) {
@@ -355,7 +396,7 @@ static ilsa_status allocate(coarse *c) {
     ILSAI_TRY(ilsai_fields_create(&c->known, cells, FIELD_FRACTURE, leaks));
     ILSAI_TRY(ilsai_fields_create(&c->field, cells, FIELD_FRACTURE, leaks));
     ILSAI_TRY(ilsai_cell_field_copy(&c->m->stress, &c->stress));
-    ILSAI_TRY(ilsai_cell_field_coarsen(&c->stress));
+    ILSAI_TRY(ilsai_cell_field_coarsen(&c->stress, c->factor_x, c->factor_y));
     return ilsai_elasticity_create(c->m->material.E_prime, c->mesh.dx, c->mesh.dy,
                                    c->m->options.product, &c->elastic);
 }
@@ -386,27 +427,48 @@ static void exchange(ilsa_solver *s, coarse *c) {
     *c = old;
 }
 
-static ilsa_status check(ilsa_solver *s) {
+/* The cells of the footprint along the axis of those to be coarsened that has the fewest. */
+static int fewest_across(const box *b, int directions) {
+    int columns = b->x1 - b->x0 + 1, rows = b->y1 - b->y0 + 1;
+    return directions == ILSA_ALONG_X   ? columns
+           : directions == ILSA_ALONG_Y ? rows
+           : columns < rows             ? columns
+                                        : rows;
+}
+
+static ilsa_mesh_def coarser(const ilsa_mesh_def *mesh, int directions) {
+    return (ilsa_mesh_def){mesh->nx, mesh->ny, mesh->dx * (directions & ILSA_ALONG_X ? 2 : 1),
+                           mesh->dy * (directions & ILSA_ALONG_Y ? 2 : 1)};
+}
+
+static ilsa_status check(ilsa_solver *s, int directions) {
     ILSAI_TRY(ilsai_fracture_check(&s->fracture, &s->error));
-    const box *b = &s->fracture.footprint;
-    int across = b->x1 - b->x0 < b->y1 - b->y0 ? b->x1 - b->x0 + 1 : b->y1 - b->y0 + 1;
+    if (directions < ILSA_ALONG_X || directions > (ILSA_ALONG_X | ILSA_ALONG_Y)) {
+        return ilsai_fail(&s->error, ILSA_ERR_VALUE,
+                          "directions = %d: must be ILSA_ALONG_X, ILSA_ALONG_Y or both",
+                          directions);
+    }
+    int across = fewest_across(&s->fracture.footprint, directions);
     if (across < 2 * ILSAI_COARSEN_LEAST) {
         return ilsai_fail(&s->error, ILSA_ERR_VALUE,
                           "the footprint is %d cells across: must be at least %d to coarsen",
                           across, 2 * ILSAI_COARSEN_LEAST);
     }
-    return ILSA_OK;
+    ilsa_mesh_def mesh = coarser(&s->model.mesh, directions);
+    return ilsai_mesh_check(&mesh, &s->error);
 }
 
-ilsa_status ilsa_coarsen(ilsa_solver *solver) {
+ilsa_status ilsa_coarsen_along(ilsa_solver *solver, int directions) {
     if (!solver) {
         return ilsai_check_pointer(ilsai_thread_error(), "solver", solver);
     }
-    ILSAI_TRY(check(solver));
+    ILSAI_TRY(check(solver, directions));
     const ilsa_mesh_def *mesh = &solver->model.mesh;
     coarse c = {.m = &solver->model,
                 .f = &solver->fracture,
-                .mesh = {mesh->nx, mesh->ny, 2 * mesh->dx, 2 * mesh->dy},
+                .factor_x = directions & ILSA_ALONG_X ? 2 : 1,
+                .factor_y = directions & ILSA_ALONG_Y ? 2 : 1,
+                .mesh = coarser(mesh, directions),
                 .footprint = {mesh->nx, -1, mesh->ny, -1}};
     ilsa_status status = make(&c, solver->numerics.march);
     if (status == ILSA_OK) {
@@ -416,4 +478,8 @@ ilsa_status ilsa_coarsen(ilsa_solver *solver) {
     release(&c);
     return status == ILSA_OK ? ILSA_OK
                              : ilsai_fail(&solver->error, status, "no memory to coarsen the mesh");
+}
+
+ilsa_status ilsa_coarsen(ilsa_solver *solver) {
+    return ilsa_coarsen_along(solver, ILSA_ALONG_X | ILSA_ALONG_Y);
 }

@@ -312,6 +312,7 @@ static ilsa_solver_def some_options(fuzz_input *in) {
     def.linear = (ilsa_linear_solver)(odd ? fuzz_choice(in, 5) - 1 : fuzz_choice(in, 3));
     def.product = (ilsa_product)(odd ? fuzz_choice(in, 5) - 1 : fuzz_choice(in, 2) * 2);
     def.coarsen = odd ? some_count(in, 0, 1) : fuzz_choice(in, 2);
+    def.cells_max = odd ? some_count(in, 0, 2000) : 2000;
     def.threads = odd ? some_count(in, 0, 3) : fuzz_choice(in, 8) == 7 ? 2 : 0;
     def.step_cells = odd ? some_number(in, 0.01, 1) : 0;
     def.tolerance = odd ? some_number(in, 1e-6, 0.1) : 0;
@@ -478,7 +479,18 @@ static void coarsen(world *w) {
     ilsa_solver *s = w->solver[choose(&w->in)];
     image before = take_image(s);
     mark(s);
-    check_call(ilsa_coarsen(s), s, &before, 0);
+    int directions = fuzz_choice(&w->in, 6) - 1;
+    check_call(directions < 0 ? ilsa_coarsen(s) : ilsa_coarsen_along(s, directions), s, &before, 0);
+}
+
+static void grow(world *w) {
+    ilsa_solver *s = w->solver[choose(&w->in)];
+    int odd = fuzz_choice(&w->in, 8) == 7;
+    int columns = odd ? some_count(&w->in, 0, 9) : fuzz_choice(&w->in, 4);
+    int rows = odd ? some_count(&w->in, 0, 9) : fuzz_choice(&w->in, 4);
+    image before = take_image(s);
+    mark(s);
+    check_call(ilsa_grow(s, columns, rows), s, &before, 0);
 }
 
 /* Reading what may not be there. */
@@ -597,7 +609,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         make_mesh,   make_material, make_stress, set_uniform, set_layers,  set_cells,  destroy,
         make_solver, start,         set_rate,    set_stress,  step,        step,       step,
         advance_one, advance_one,   advance,     coarsen,     read_solver, read_front, save,
-        restore,     restore,       tips,        begin};
+        restore,     restore,       tips,        begin,       grow};
     world w = {.in = {data, size}, .length = 1, .time = 1, .force = 1};
     begin(&w);
     for (int k = 0; k < CALLS && w.in.size > 0; k++)
