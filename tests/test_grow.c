@@ -68,10 +68,22 @@ static void check_fronts(ilsa_solver *a, ilsa_solver *b) {
                     p[k].loop == q[k].loop);
 }
 
+static void check_kinds(const ilsa_solver *small, const ilsa_solver *large) {
+    ilsa_mesh_def m = mesh_of(small), n = mesh_of(large);
+    const unsigned char *a, *b;
+    assert_int_equal(ilsa_get_cell_kinds(small, &a), ILSA_OK);
+    assert_int_equal(ilsa_get_cell_kinds(large, &b), ILSA_OK);
+    for (int j = 0; j < m.ny; j++)
+        for (int i = 0; i < m.nx; i++)
+            assert_int_equal(a[j * m.nx + i],
+                             b[(j + (n.ny - m.ny) / 2) * n.nx + i + (n.nx - m.nx) / 2]);
+}
+
 /* Everything that a host can read. */
 static void check_same(ilsa_solver *small, ilsa_solver *large) {
     check_summaries(small, large);
     check_fronts(small, large);
+    check_kinds(small, large);
     check_field(small, large, host_width(small), host_width(large), 0);
     check_field(small, large, host_pressure(small), host_pressure(large), 0);
     if (host_trigger(small))

@@ -84,7 +84,7 @@
  * the fluid in the fracture. */
 #define ILSAI_LEAK_FAST 3.0
 /* The front may take away at most this part of a self term in Newton's matrix. */
-#define ILSAI_SELF_TERM_GIVES 0.1
+#define ILSAI_SELF_TERM_GIVES 0.3
 /* The derivatives of leak-off are differences over this advance of the front, in cells. */
 #define ILSAI_DIFFERENCE 1e-5
 /* The widths of a pass are found to a part of the front's last change, the smaller of PASS_SHARE

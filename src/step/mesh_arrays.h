@@ -10,6 +10,7 @@
 typedef struct mesh_arrays {
     fields fracture, trial;
     coupled *coupled;
+    unsigned char *kind; /* as handed out */
 } mesh_arrays;
 
 /* Arrays for a mesh, all cells empty. ILSA_ERR_MEMORY; *a is to be destroyed in any case. */
