@@ -20,6 +20,8 @@ typedef struct sensitivity {
     double source_term[SENSITIVITY_PARENTS]; /* of the source term, by the leak-off */
     double pressure[SENSITIVITY_PARENTS];    /* of the pressure of a channel cell at its own width,
                                                 by what its self term lacks beside the front */
+    double advance[SENSITIVITY_PARENTS];     /* of the distance from a survey cell to the front, in
+                                                cells; 0 for other cells */
 } sensitivity;
 
 #endif

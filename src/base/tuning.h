@@ -38,9 +38,10 @@
 /* The relative residual to which GMRES solves a Newton system. The front and the cube of the width
  * change by more between two systems than a sharper solution would be worth. */
 #define ILSAI_GMRES_TOLERANCE 3e-2
-/* The relative residual while cells are closed. Which of them open, and what they leak, depends on
- * small differences. */
+/* The relative residual while more than this part of the cells is closed. Which of them open, and
+ * what they leak, depends on small differences. */
 #define ILSAI_GMRES_CONTACT 1e-4
+#define ILSAI_GMRES_CLOSED  0.01
 /* Up to this many unknowns the dense factorisation is faster than GMRES. */
 #define ILSAI_DENSE_UNKNOWNS 100
 
@@ -52,6 +53,8 @@
 #define ILSAI_NEWTON_RESIDUAL  6.0
 /* A Newton step may take away this part of a width. */
 #define ILSAI_WIDTH_DROP 0.9
+/* The furthest that a Newton step moves a front, in cells. */
+#define ILSAI_NEWTON_ADVANCE 0.5
 /* From this iteration on a Newton step that leaves more volume unaccounted for than there was is
  * cut by this factor, so many times at most: cells that close and open far apart in width send it
  * to and fro. */

@@ -2,9 +2,10 @@
 #include "front/tip_cells.h"
 #include <math.h>
 
-/* Derivatives of the width, the source term and the pressure of a cell. */
+/* Derivatives of the width, the source term and the pressure of a cell, and of the distance from a
+ * survey cell to the front in cells. */
 typedef struct derivative {
-    double width, source_term, pressure;
+    double width, source_term, pressure, advance;
 } derivative;
 
 /* By an advance of the front within the step. */
@@ -14,7 +15,7 @@ static derivative differentiate(const front_pass *p, const front_cell *c, double
     moved.ell += small;
     moved.T -= small;
     moved.V += small / p->dt;
-    derivative a = {0, 0, 0};
+    derivative a = {0};
     if (p->trial->kind[c->cell] == ILSA_CELL_TIP) {
         a.width = width_slope;
     } else {
@@ -33,6 +34,7 @@ static void depend_on(sensitivity *r, int cell, const derivative *a, double weig
     r->from[r->count] = cell;
     r->width[r->count] = weight * a->width;
     r->source_term[r->count] = weight * a->source_term;
+    r->advance[r->count] = weight * a->advance;
     r->pressure[r->count++] = weight * a->pressure;
 }
 
@@ -49,13 +51,13 @@ static sensitivity sensitivity_of_cell(const front_pass *p, const front_cell *c,
                                        const width_slopes *slopes) {
     sensitivity r = {.cell = c->cell};
     bool tip = p->trial->kind[c->cell] == ILSA_CELL_TIP;
-    derivative moving = differentiate(p, c, slopes->advance), resting = {slopes->advance, 0, 0};
+    derivative moving = differentiate(p, c, slopes->advance), resting = {.width = slopes->advance};
     for (int k = 0; k < c->from.count; k++) {
         const survey_cell *survey = &p->survey_cells[c->from.survey[k]];
         if (c->V > 0) {
             double weight = c->from.weight[k];
             derivative by_s = {weight * moving.width + (tip ? slopes->past_steps[k] : 0),
-                               weight * moving.source_term, weight * moving.pressure};
+                               weight * moving.source_term, weight * moving.pressure, 0};
             depend_on_survey(&r, survey, &by_s);
         } else if (tip && c->K_num > 0) {
             double part = ilsai_survey_smooth_slope(&p->widths, survey);
@@ -74,7 +76,8 @@ static sensitivity sensitivity_of_survey(const front_pass *p, const survey_cell 
     double self =
         ilsai_elasticity_self_entry(p->elastic, survey->cell % p->g->nx, survey->cell / p->g->nx);
     double slope = ilsai_survey_self_term(p, survey).slope * p->trial->width[survey->cell];
-    derivative a = {.pressure = fmax(slope * survey->ds_dw, -ILSAI_SELF_TERM_GIVES * self)};
+    derivative a = {.advance = 1 / survey->h,
+                    .pressure = fmax(slope * survey->ds_dw, -ILSAI_SELF_TERM_GIVES * self)};
     if (survey->ds_dw > 0) {
         a.pressure /= survey->ds_dw;
     }

@@ -322,18 +322,21 @@ static void set_rhs(coupled *c, const coupled_problem *problem) {
 
 static ilsa_status solve_iterative(coupled *c, coupled_counts *counts) {
     ILSAI_TRY(ilsai_jacobian_set_preconditioner(&c->matrix));
-    gmres_result result = ilsai_gmres_solve(
-        c->krylov, (size_t)c->cells.count, ilsai_jacobian_multiply, ilsai_jacobian_precondition,
-        &c->matrix, c->rhs, c->step, c->closed > 0 ? ILSAI_GMRES_CONTACT : ILSAI_GMRES_TOLERANCE,
-        ILSAI_GMRES_ITERATIONS);
+    gmres_result result =
+        ilsai_gmres_solve(c->krylov, (size_t)c->cells.count, ilsai_jacobian_multiply,
+                          ilsai_jacobian_precondition, &c->matrix, c->rhs, c->step,
+                          c->closed > ILSAI_GMRES_CLOSED * c->cells.count ? ILSAI_GMRES_CONTACT
+                                                                          : ILSAI_GMRES_TOLERANCE,
+                          ILSAI_GMRES_ITERATIONS);
     counts->krylov += result.iterations;
     c->residual = result.residual;
     return result.converged ? ILSA_OK : ILSA_STEP_REJECTED;
 }
 
 /*
- * The largest part of the Newton step, at most 1, that leaves every width positive; the cells that
- * are nearly closed have contact to see to that.
+ * The largest part of the Newton step, at most 1, that leaves every width positive and takes no
+ * front further than its sensitivities hold. The cells that are nearly closed have contact to see
+ * to their widths.
  */
 static double step_length(const coupled *c, const coupled_problem *problem) {
     double length = 1, nearly = nearly_closed(problem);
@@ -342,6 +345,10 @@ static double step_length(const coupled *c, const coupled_problem *problem) {
         if (c->cells.unknown[k] == UNKNOWN_WIDTH && w > nearly &&
             -c->step[k] * length > ILSAI_WIDTH_DROP * w) {
             length = ILSAI_WIDTH_DROP * w / -c->step[k];
+        }
+        double advance = fabs(ilsai_jacobian_advance(&c->matrix, k, c->step));
+        if (advance * length > ILSAI_NEWTON_ADVANCE) {
+            length = ILSAI_NEWTON_ADVANCE / advance;
         }
     }
     return length;

@@ -116,6 +116,11 @@ double ilsai_jacobian_pressure_change(const jacobian *m, int k, const double *x)
     return r ? change_by(m, r, r->pressure, x) : 0;
 }
 
+double ilsai_jacobian_advance(const jacobian *m, int k, const double *x) {
+    const sensitivity *r = sensitivity_of(m, k);
+    return r ? change_by(m, r, r->advance, x) : 0;
+}
+
 /* A loop over the numbered cells, which reads the vector x or writes y. */
 typedef struct loop {
     jacobian *m;

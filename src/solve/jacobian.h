@@ -75,10 +75,11 @@ ilsa_status ilsai_jacobian_solve_full(jacobian *m, const double *b, double *x);
  * The changes of numbered cell k, by its sensitivity, for changes x of the unknowns: of the width
  * of a tip cell, of the source term, and of the pressure in a channel cell by what its self term
  * lacks, at a width that stays. A tip cell has them in proportion to its fill. Zero for a cell
- * without a sensitivity.
+ * without a sensitivity. The last one is that of the front of a survey cell, in cells.
  */
 double ilsai_jacobian_width_change(const jacobian *m, int k, const double *x);
 double ilsai_jacobian_source_change(const jacobian *m, int k, const double *x);
 double ilsai_jacobian_pressure_change(const jacobian *m, int k, const double *x);
+double ilsai_jacobian_advance(const jacobian *m, int k, const double *x);
 
 #endif
