@@ -117,62 +117,77 @@ static void print_luck(const field_case *runs, const field_result *results, int 
     printf(
         "scene            | half-length %%, heights cells, width %%, efficiency %%, pressure %%, "
         "with: stresses in the 7th digit | radius +1 %% | radius -1 %% | cells +1 %%\n");
-    for (int k = 0; k < scenes; k++) {
-        const field_result *r = &results[k * VARIANTS];
-        printf("%-16s", base(runs[k * VARIANTS].file));
+    for (int k = 0; k < scenes; k++, runs += VARIANTS, results += VARIANTS) {
+        printf("%-16s", base(runs->file));
         for (int v = 1; v < VARIANTS; v++)
-            print_variant(&r[0], &r[v]);
+            print_variant(&results[0], &results[v]);
         printf("\n");
     }
 }
 
 /* ---- ---------------------------------------------------------------------------------------- */
 
+/* The number that an option was given; NAN where there is none. */
+static double number(const char *text) {
+    char *end;
+    double value = strtod(text, &end);
+    return end == text || *end ? NAN : value;
+}
+
 static int usage(void) {
     fprintf(stderr, "bench_field [-l LEVEL] [-f HALVINGS] [-s SECONDS] [-v] FILE ...\n");
     return 2;
+}
+
+/* Runs the scenes, each as the options say or in all variants, and prints what came of them.
+ * Returns how many runs were wrong. */
+static int run_all(field_case *runs, field_result *results, char *done, int count, int luck) {
+    table t = {runs, results, done, count, 0};
+    int wrong = 0;
+    printf("scene            verdict steps refused  CPU s across closed  p least  p most (MPa) "
+           "half-length  bottom     top  w (mm)  effic. net (MPa)\n");
+    field_run(runs, results, count, show, &t);
+    print_sums(results, count);
+    if (luck)
+        print_luck(runs, results, count / VARIANTS);
+    for (int k = 0; k < count; k++)
+        wrong += results[k].verdict == FIELD_WRONG;
+    return wrong;
 }
 
 int main(int argc, char **argv) {
     field_case options = {.level = 0};
     int luck = 0;
     for (int c; (c = getopt(argc, argv, "l:f:s:v")) != -1;) {
-        if (c == 'l')
-            options.level = atoi(optarg);
-        else if (c == 'f')
-            options.finer = atoi(optarg);
-        else if (c == 's')
-            options.seconds = atof(optarg);
+        double value = c == 'v' || c == '?' ? 0 : number(optarg);
+        if (c == 'l' && value >= 1 && value <= 5)
+            options.level = (int)value;
+        else if (c == 'f' && value >= 0 && value <= 4)
+            options.finer = (int)value;
+        else if (c == 's' && value > 0)
+            options.seconds = value;
         else if (c == 'v')
             luck = 1;
         else
             return usage();
     }
-    int scenes = argc - optind, each = luck ? VARIANTS : 1, count = scenes * each, wrong = 0;
+    int scenes = argc - optind, each = luck ? VARIANTS : 1, count = scenes * each, wrong = 1;
     if (scenes < 1)
         return usage();
     field_case *runs = calloc((size_t)count, sizeof *runs);
     field_result *results = calloc((size_t)count, sizeof *results);
-    table t = {runs, results, calloc((size_t)count, 1), count, 0};
-    if (!runs || !results || !t.done)
-        return 1;
-    for (int k = 0; k < count; k++) {
+    char *done = calloc((size_t)count, 1);
+    for (int k = 0; k < count && runs; k++) {
         runs[k] = variants[k % each];
         runs[k].level = options.level;
         runs[k].finer = options.finer;
         runs[k].seconds = options.seconds;
         snprintf(runs[k].file, sizeof runs[k].file, "%s", argv[optind + k / each]);
     }
-    printf("scene            verdict steps refused  CPU s across closed  p least  p most (MPa) "
-           "half-length  bottom     top  w (mm)  effic. net (MPa)\n");
-    field_run(runs, results, count, show, &t);
-    print_sums(results, count);
-    if (luck)
-        print_luck(runs, results, scenes);
-    for (int k = 0; k < count; k++)
-        wrong += results[k].verdict == FIELD_WRONG;
+    if (runs && results && done)
+        wrong = run_all(runs, results, done, count, luck);
     free(runs);
     free(results);
-    free(t.done);
+    free(done);
     return wrong > 0;
 }

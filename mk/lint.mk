@@ -2,7 +2,7 @@
 
 .PHONY: format format-check rooms rooms-figure lint tidy cppcheck analyze
 C_FILES  = $(shell find include src tests bench examples -name '*.[ch]' -o -name '*.cpp')
-LINTED   = $(SOURCES) $(RUN) $(wildcard examples/*.c bench/*.c tests/*.c tests/fuzz/*.c)
+LINTED   = $(SOURCES) $(RUN) $(wildcard examples/*.c bench/*.c tests/*.c tests/fuzz/*.c bench/scene_files/*.c)
 
 format: ## clang-format over all sources, in place
 	clang-format -i $(C_FILES)
