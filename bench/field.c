@@ -65,7 +65,9 @@ static void print_sums(const field_result *results, int count) {
     double *seconds = malloc((size_t)count * sizeof *seconds), sum = 0, worst_part = 0;
     long steps = 0, refused = 0;
     int right = 0, over = 0;
-    for (int k = 0; k < count && seconds; k++) {
+    if (!seconds)
+        return;
+    for (int k = 0; k < count; k++) {
         const ilsa_report *total = &results[k].end.total;
         double part = (double)total->rejected / fmax((double)(total->steps + total->rejected), 1);
         seconds[k] = results[k].seconds;
@@ -76,14 +78,12 @@ static void print_sums(const field_result *results, int count) {
         over += part > 0.05;
         worst_part = larger_of(worst_part, part);
     }
-    if (seconds) {
-        qsort(seconds, (size_t)count, sizeof *seconds, ascending);
-        printf("%d of %d right; refused %ld of %ld attempts, %.2f %%, of a scene at most %.1f %%, "
-               "in %d over 5 %%; CPU s: sum %.1f, median %.2f, largest %.1f\n",
-               right, count, refused, steps + refused,
-               100 * (double)refused / fmax((double)(steps + refused), 1), 100 * worst_part, over,
-               sum, seconds[count / 2], seconds[count - 1]);
-    }
+    qsort(seconds, (size_t)count, sizeof *seconds, ascending);
+    printf("%d of %d right; refused %ld of %ld attempts, %.2f %%, of a scene at most %.1f %%, "
+           "in %d over 5 %%; CPU s: sum %.1f, median %.2f, largest %.1f\n",
+           right, count, refused, steps + refused,
+           100 * (double)refused / fmax((double)(steps + refused), 1), 100 * worst_part, over, sum,
+           seconds[count / 2], seconds[count - 1]);
     free(seconds);
 }
 
