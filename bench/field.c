@@ -155,6 +155,18 @@ static int run_all(field_case *runs, field_result *results, char *done, int coun
     return wrong;
 }
 
+/* Each file as the options say, in so many variants. */
+static void set_runs(field_case *runs, int count, int each, const field_case *options,
+                     char *const *files) {
+    for (int k = 0; k < count; k++) {
+        runs[k] = variants[k % each];
+        runs[k].level = options->level;
+        runs[k].finer = options->finer;
+        runs[k].seconds = options->seconds;
+        snprintf(runs[k].file, sizeof runs[k].file, "%s", files[k / each]);
+    }
+}
+
 int main(int argc, char **argv) {
     field_case options = {.level = 0};
     int luck = 0;
@@ -177,15 +189,10 @@ int main(int argc, char **argv) {
     field_case *runs = calloc((size_t)count, sizeof *runs);
     field_result *results = calloc((size_t)count, sizeof *results);
     char *done = calloc((size_t)count, 1);
-    for (int k = 0; k < count && runs; k++) {
-        runs[k] = variants[k % each];
-        runs[k].level = options.level;
-        runs[k].finer = options.finer;
-        runs[k].seconds = options.seconds;
-        snprintf(runs[k].file, sizeof runs[k].file, "%s", argv[optind + k / each]);
-    }
-    if (runs && results && done)
+    if (runs && results && done) {
+        set_runs(runs, count, each, &options, argv + optind);
         wrong = run_all(runs, results, done, count, luck);
+    }
     free(runs);
     free(results);
     free(done);
