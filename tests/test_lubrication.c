@@ -448,7 +448,8 @@ static void restrain(scene *s, const double *openness, double *inflow) {
 /* Every third cell closed, every seventh draining; none of their volume is lost. */
 static void closed_cells_take_fluid_in_and_give_none(void **state) {
     (void)state;
-    double openness[400], inflow[400], moved[400], sum = 0, size = 0, worst = NOTHING_YET;
+    double openness[400] = {0}, inflow[400] = {0}, moved[400] = {0};
+    double sum = 0, size = 0, worst = NOTHING_YET;
     scene s = make_scene(12, 10, 0, 0);
     fill(&s, 0, 13);
     work_out(&s);
