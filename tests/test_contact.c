@@ -473,7 +473,7 @@ static void pressures_stay_those_of_rock_after_shut_in(void **state) {
                   "refused\n",
                   1e-6 * least, 1e-6 * most, closed, now.total.steps, now.total.rejected);
     assert_true(closed > 100 && least > -100e6 && most < 100e6);
-    assert_true(now.total.rejected <= 0.05 * (double)now.total.steps);
+    assert_true((double)now.total.rejected <= 0.05 * (double)now.total.steps);
     assert_true(fabs(host_imbalance(solver)) <= 1e-12);
     ilsa_solver_destroy(&solver);
 }
