@@ -139,7 +139,7 @@ static void a_layer_shut_in_closes_without_stuttering(void **state) {
     print_message("field: after shut-in %.3g .. %.3g MPa, %ld steps, %ld refused\n",
                   1e-6 * seen.least, 1e-6 * seen.most, end.total.steps, end.total.rejected);
     assert_true(seen.least > -100e6 && seen.most < 100e6);
-    assert_true(end.total.rejected <= 0.05 * (double)end.total.steps);
+    assert_true((double)end.total.rejected <= 0.05 * (double)end.total.steps);
     assert_below(fabs(host_imbalance(solver)), 1e-12);
     ilsa_solver_destroy(&solver);
 }
