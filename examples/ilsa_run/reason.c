@@ -50,6 +50,9 @@ int reason_outside(const scene *sc, const ilsa_solver *solver, FILE *out) {
     return count;
 }
 
+/* Margins that differ by less, in cells, are the same: rounding is not to choose an axis. */
+static const double margin_alike = 1e-6;
+
 /* Cells from the footprint to the nearer edge of the mesh along one axis. */
 static double margin(double low, double high, double size, int n) {
     return 0.5 * n - fmax(-low, high) / size;
@@ -62,7 +65,7 @@ static void at_edge(const scene *sc, const ilsa_solver *solver, FILE *out) {
         return;
     double in_x = margin(now.extent_x_min, now.extent_x_max, m.dx, m.nx);
     double in_y = margin(now.extent_y_min, now.extent_y_max, m.dy, m.ny);
-    scene_error(sc, out, SECTION_MESH, in_x <= in_y ? MESH_NX : MESH_NY,
+    scene_error(sc, out, SECTION_MESH, in_x <= in_y + margin_alike ? MESH_NX : MESH_NY,
                 ": the fracture has come to the edge of the mesh, x %.6g .. %.6g, y %.6g .. %.6g; "
                 "give %s",
                 now.extent_x_min, now.extent_x_max, now.extent_y_min, now.extent_y_max,
