@@ -458,30 +458,6 @@ static void cells_come_after_their_parents(void **state) {
 }
 
 /* A front that hardly curves is hardly different from a straight one. */
-/*
- * The front of a curved tip reaches a cell from two sides, one of which falls back behind it: the
- * level goes over to that from the other side alone. It once jumped by a twentieth of a cell.
- */
-static void level_does_not_jump_as_a_neighbour_falls_back(void **state) {
-    (void)state;
-    double last = 0, worst = NOTHING_YET;
-    const double small = 1e-3;
-    for (int k = 0; k < 2000; k++) {
-        scene s = make_scene(5, 5, 1, 1);
-        double b = -1 + k * small;
-        add_seed(&s, 2 * 5 + 1, -0.9)->curvature = 0.4;
-        add_seed(&s, 1 * 5 + 2, b)->curvature = 0.4;
-        int count;
-        march_all(&s, 3, &count);
-        double T = s.level[2 * 5 + 2];
-        worst = k > 0 ? worst_of(worst, fabs(T - last)) : worst;
-        last = T;
-        free_scene(&s);
-    }
-    print_message("level moves by %.2g cells where a neighbour's moves by %.2g\n", worst, small);
-    assert_below(worst, 1.5 * small);
-}
-
 static void curvature_enters_smoothly(void **state) {
     (void)state;
     double tiny = 1e-7, worst = NOTHING_YET;
@@ -932,7 +908,6 @@ int main(void) {
         cmocka_unit_test(curvature_sharpens_circles),
         cmocka_unit_test(every_cell_answers_to_its_neighbours),
         cmocka_unit_test(cells_come_after_their_parents),
-        cmocka_unit_test(level_does_not_jump_as_a_neighbour_falls_back),
         cmocka_unit_test(curvature_enters_smoothly),
         cmocka_unit_test(normals_are_unit_vectors),
         cmocka_unit_test(seeds_and_channel_are_kept),

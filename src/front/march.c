@@ -182,10 +182,9 @@ static void bend(node *n, const node *a, const node *b, double dx, double dy) {
         node bent = *n;
         double x = 0.5 * dx * dx * kappa * n->sin_a * n->sin_a;
         double y = 0.5 * dy * dy * kappa * n->cos_a * n->cos_a;
-        if (!plane(&bent, a->T - x, b->T - y, dx, dy)) {
+        if (!plane(&bent, a->T - x, b->T - y, dx, dy) || bent.T < fmax(a->T, b->T)) {
             return;
         }
-        bent.T = fmax(bent.T, fmax(a->T, b->T));
         *n = bent;
     }
 }
