@@ -30,7 +30,9 @@ do for [quantity in "width pressure"] {
     set yrange [*<(wide ? 0 : low):high<*]
     do for [axis in axes] {
         set xlabel axis eq "x" ? x_label : y_label
+        stats table("line_".axis, outputs) using axis name "R" nooutput
         do for [i = 1:axis eq "y" ? words(interfaces) : 0] {
+            if (number(interfaces, i) < R_min || number(interfaces, i) > R_max) { continue }
             set arrow i from number(interfaces, i), graph 0 to number(interfaces, i), graph 1 nohead lw 1.5 lc rgb "black" dt 2
         }
         plot for [i = 1:outputs] table("line_".axis, i) using axis:(scale * column(quantity)) with lines lw 2 lc palette frac shade(i)
