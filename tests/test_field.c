@@ -6,6 +6,7 @@
 #include "host.h"
 
 #include <math.h>
+#include <string.h>
 
 /* Cells of 2 m, one source of the rate at the origin. */
 static host_scene field_scene(int nx, int ny, const ilsa_rock *rock, double rate) {
@@ -14,6 +15,13 @@ static host_scene field_scene(int nx, int ny, const ilsa_rock *rock, double rate
     scene.options = ilsa_solver_def_default();
     assert_int_equal(ilsa_material_def_from_rock(rock, &scene.material), ILSA_OK);
     return scene;
+}
+
+/* Layers from the lowest one on, with interfaces between them. */
+static void set_layers(host_scene *scene, int interfaces, const double *y, const double *sigma) {
+    scene->interfaces = interfaces;
+    memcpy(scene->interface_y, y, (size_t)interfaces * sizeof *y);
+    memcpy(scene->sigma, sigma, (size_t)(interfaces + 1) * sizeof *sigma);
 }
 
 /* Two parts in a hundred of all attempts, and one, may be refused. */
@@ -35,12 +43,7 @@ static ilsa_summary pumped(const host_scene *scene, double radius, double t_end)
 static host_scene thin_pay(void) {
     ilsa_rock rock = {.E = 30e9, .nu = 0.25, .mu = 0.002, .K_Ic = 1.2e6, .C_L = 2e-5};
     host_scene scene = field_scene(81, 31, &rock, 0.05);
-    scene.interfaces = 2;
-    scene.interface_y[0] = -6;
-    scene.interface_y[1] = 6;
-    scene.sigma[0] = 46e6;
-    scene.sigma[1] = 40e6;
-    scene.sigma[2] = 49e6;
+    set_layers(&scene, 2, (const double[]){-6, 6}, (const double[]){46e6, 40e6, 49e6});
     return scene;
 }
 
@@ -65,14 +68,8 @@ static void thin_pay_does_not_depend_on_its_start(void **state) {
 static host_scene weak_layer(void) {
     ilsa_rock rock = {.E = 25e9, .nu = 0.25, .mu = 0.001, .K_Ic = 1e6, .C_L = 1e-5};
     host_scene scene = field_scene(121, 41, &rock, 0.03);
-    scene.interfaces = 3;
-    scene.interface_y[0] = -4;
-    scene.interface_y[1] = 5;
-    scene.interface_y[2] = 21;
-    scene.sigma[0] = 30.9e6;
-    scene.sigma[1] = 29.1e6;
-    scene.sigma[2] = 30.5e6;
-    scene.sigma[3] = 29.4e6;
+    set_layers(&scene, 3, (const double[]){-4, 5, 21},
+               (const double[]){30.9e6, 29.1e6, 30.5e6, 29.4e6});
     return scene;
 }
 
@@ -93,12 +90,8 @@ static host_scene shut_in_layer(void) {
     ilsa_rock rock = {.E = 7.325e9, .nu = 0.287, .mu = 0.02742, .K_Ic = 1.114e6, .C_L = 3.8e-6};
     host_scene scene = field_scene(201, 51, &rock, 0.02937);
     scene.mesh.dx = scene.mesh.dy = 4;
-    scene.interfaces = 2;
-    scene.interface_y[0] = -54.53;
-    scene.interface_y[1] = 25.14;
-    scene.sigma[0] = 16.28e6;
-    scene.sigma[1] = 9.305e6;
-    scene.sigma[2] = 15.09e6;
+    set_layers(&scene, 2, (const double[]){-54.53, 25.14},
+               (const double[]){16.28e6, 9.305e6, 15.09e6});
     return scene;
 }
 

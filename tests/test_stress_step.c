@@ -52,7 +52,7 @@ static void front_feels_no_jump(void **unused) {
     }
     assert_true(ilsai_stress_step_width(0, 1) == 0 && ilsai_stress_step_width(1, 0) == 0);
     assert_true(ilsai_stress_step_width(-1, 1) == 0 && ilsai_stress_step_width(1, -1) == 0);
-    assert_true(ilsai_stress_step_moment(0, 1) == 0 && ilsai_stress_step_moment(1, -1) == 0);
+    assert_true(ilsai_stress_step_at(0, 1).moment == 0 && ilsai_stress_step_at(1, -1).moment == 0);
 }
 
 static void moment_is_the_integral(void **unused) {
@@ -65,7 +65,7 @@ static void moment_is_the_integral(void **unused) {
         for (int i = 0; i < POINTS; i++)
             sum += ilsai_stress_step_width(2.5 * ends[k] * (i + 0.5) / POINTS, 2.5) * 2.5 *
                    ends[k] / POINTS;
-        worst = worst_of(worst, fabs(ilsai_stress_step_moment(2.5 * ends[k], 2.5) / sum - 1));
+        worst = worst_of(worst, fabs(ilsai_stress_step_at(2.5 * ends[k], 2.5).moment / sum - 1));
     }
     print_message("jump: moment %.1e off midpoints\n", worst);
     assert_below(worst, 1e-6);

@@ -24,13 +24,14 @@ static double sum_of_steps(const survey_cell *survey, double s) {
     return sum;
 }
 
-/* The part of the widths of the steps for their sum at the distance of the front. */
+/*
+ * The part of the widths of its stress steps that a survey cell is given, for their sum at
+ * its distance: 1 where they add width. A lower stress around the front takes width, w < 0, as if
+ * the fluid kept up its pressure there through a neck of any width. It cannot: of w_a + w, with the
+ * width w_a of the asymptote, w_a / (1 + |w| / w_a) is left, which is positive for any drop.
+ */
 static double share_of(const survey_cell *survey, double sum) {
     return sum < 0 ? survey->w_tip / (survey->w_tip - sum) : 1;
-}
-
-double ilsai_survey_step_share(const survey_cell *survey) {
-    return share_of(survey, sum_of_steps(survey, survey->s));
 }
 
 double ilsai_survey_step_width(const survey_cell *survey, double s) {

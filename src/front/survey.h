@@ -35,14 +35,6 @@ typedef struct step_depth {
 } step_depth;
 step_depth ilsai_survey_step_depth(const survey_cell *survey, int k);
 
-/*
- * The part of the widths of its stress steps that a survey cell is given, at its distance and
- * velocity: 1 where they add width. A lower stress around the front takes width, w < 0, as if the
- * fluid kept up its pressure there through a neck of any width. It cannot: of w_a + w, with the
- * width w_a of the asymptote, w_a / (1 + |w| / w_a) is left, which is positive for any drop.
- */
-double ilsai_survey_step_share(const survey_cell *survey);
-
 /* Width that the stress steps add at a distance s behind the front of a survey cell. */
 double ilsai_survey_step_width(const survey_cell *survey, double s);
 

@@ -40,7 +40,3 @@ stress_step_point ilsai_stress_step_at(double s, double d) {
     double moment = 2 * four_over_pi * d * d * moment_bracket(u, damped);
     return (stress_step_point){width, moment, (2 * moment - s * width) / d};
 }
-
-double ilsai_stress_step_moment(double s, double d) {
-    return ilsai_stress_step_at(s, d).moment;
-}

@@ -30,8 +30,7 @@ typedef struct stress_step_point {
 } stress_step_point;
 stress_step_point ilsai_stress_step_at(double s, double d);
 
-/* The width alone, and the integral alone. */
+/* The width alone. */
 double ilsai_stress_step_width(double s, double d);
-double ilsai_stress_step_moment(double s, double d);
 
 #endif
